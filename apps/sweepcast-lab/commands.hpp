@@ -1,0 +1,12 @@
+// The subcommands of `sweepcast-lab`, one file each: what needs heavy libraries.
+#pragma once
+
+#include "common/command.hpp"
+
+namespace sweepcast::app {
+
+void add_simulate(CLI::App& app, Command& command);
+void add_bench(CLI::App& app, Command& command);
+void add_ablate(CLI::App& app, Command& command);
+
+}  // namespace sweepcast::app

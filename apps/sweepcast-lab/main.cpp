@@ -1,0 +1,12 @@
+#include "sweepcast-lab/commands.hpp"
+
+int main(int argc, char** argv) {
+  // Named as the user called it: `sweepcast` hands these subcommands over.
+  CLI::App app{"Simulates drives and measures codecs.", "sweepcast"};
+  app.require_subcommand(1);
+  sweepcast::app::Command command;
+  sweepcast::app::add_simulate(app, command);
+  sweepcast::app::add_bench(app, command);
+  sweepcast::app::add_ablate(app, command);
+  return sweepcast::app::run(app, command, argc, argv);
+}

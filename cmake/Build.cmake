@@ -1,0 +1,18 @@
+# What every target is built with.
+
+add_library(sweepcast_build INTERFACE)
+target_compile_options(sweepcast_build INTERFACE
+  -Wall -Wextra -Wconversion -Wshadow -Werror
+  # Clouds must be the same on every machine: no fused multiply-add behind the source's back.
+  -ffp-contract=off)
+if(SWEEPCAST_SANITIZE)
+  target_compile_options(sweepcast_build INTERFACE
+    -fsanitize=${SWEEPCAST_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(sweepcast_build INTERFACE -fsanitize=${SWEEPCAST_SANITIZE})
+endif()
+
+# sweepcast_target(NAME): the settings above, and src/ as the root of internal includes.
+function(sweepcast_target name)
+  target_link_libraries(${name} PRIVATE $<BUILD_INTERFACE:sweepcast_build>)
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/src)
+endfunction()

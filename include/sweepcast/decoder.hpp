@@ -1,0 +1,43 @@
+// The decoder: frames in, clouds out.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+
+#include "sweepcast/cloud.hpp"
+#include "sweepcast/frame.hpp"
+#include "sweepcast/status.hpp"
+
+namespace sweepcast {
+
+/// Bounds on what a frame may ask for; a frame that exceeds one is refused before any allocation.
+struct DecoderOptions {
+  std::size_t max_points = std::size_t{1} << 24;
+};
+
+/// Makes clouds of frames. Needs no parameter beside the frame and trusts nothing in it.
+/// Keeps its buffers: decoding frames of a kind allocates nothing from the second on. One thread
+/// at a time may use a decoder; different decoders share nothing.
+class Decoder {
+ public:
+  explicit Decoder(const DecoderOptions& options = {});
+  Decoder(Decoder&&) noexcept;
+  Decoder& operator=(Decoder&&) noexcept;
+  ~Decoder();
+
+  /// Decodes one whole frame into `cloud`, whose memory is reused; columns that the frame does not
+  /// carry come back empty. Points come row by row from the lowest, each row by azimuth. On error
+  /// `cloud` is empty.
+  /// Errors: truncated, corrupt, unsupported, limit.
+  [[nodiscard]] Status decode(std::span<const std::byte> frame, PointCloud& cloud);
+
+  /// The head of the last frame that was decoded.
+  [[nodiscard]] const FrameHeader& last_header() const noexcept;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace sweepcast

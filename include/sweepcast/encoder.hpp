@@ -1,0 +1,104 @@
+// The encoder: sweeps in, frames out.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "sweepcast/cloud.hpp"
+#include "sweepcast/frame.hpp"
+#include "sweepcast/ladder.hpp"
+#include "sweepcast/status.hpp"
+
+namespace sweepcast {
+
+/// An axis-aligned box in the sensor's frame, metres; both corners belong to it.
+struct Box {
+  float min_x = 0, min_y = 0, min_z = 0;
+  float max_x = 0, max_y = 0, max_z = 0;
+};
+
+/// Points to leave out before coding; they are counted in `SweepCounts::cropped`.
+struct Crop {
+  float min_range = 0.0F;    ///< nearer points go, metres
+  float max_range = 0.0F;    ///< farther points go, metres; 0 means no limit
+  std::optional<Box> keep;   ///< points outside go
+  std::optional<Box> robot;  ///< points inside go: the robot's own body
+};
+
+/// The model that a block of cells is fitted with.
+enum class SurfaceModel : std::uint8_t {
+  surface,  ///< r = -d / (a i + b j + c): the paper's equation 4
+  plane,    ///< a plane in space: the paper's equation 3, for comparison
+};
+
+/// What becomes of the points that no surface fits.
+enum class UnfitCoding : std::uint8_t {
+  sa_dct,  ///< shape-adaptive DCT, quantised by the step
+  raw,     ///< ranges to the millimetre, without transform ("No Compr." of the paper's table)
+};
+
+/// How a real number becomes a multiple of the quantiser's step.
+enum class Rounding : std::uint8_t {
+  nearest,
+  truncate,  ///< towards zero, as the released code does; for comparison only
+};
+
+/// Which point a cell keeps when several fall into it.
+enum class CollisionRule : std::uint8_t { nearest_range, nearest_centre };
+
+/// Options of codec `rcpcc`. The defaults are the paper's timing setting.
+struct RcpccOptions {
+  RcpccParams params;
+  double elevation_min_deg = -90.0;  ///< field of view, degrees; the whole sphere by default:
+  double elevation_max_deg = 90.0;   ///< rows without a point cost nothing
+  double azimuth_min_deg = -180.0;   ///< may exceed azimuth_max: the view then crosses +-180
+  double azimuth_max_deg = 180.0;
+  double max_range_m = 500.0;  ///< farther points count as out of view
+  int block_size = 4;          ///< side of a macroblock in cells: 4, 8 or 16
+  int region_size = 16;        ///< side of an SA-DCT region in cells: 8, 16 or 32
+  SurfaceModel model = SurfaceModel::surface;
+  UnfitCoding unfit = UnfitCoding::sa_dct;
+  Rounding rounding = Rounding::nearest;
+  CollisionRule collision = CollisionRule::nearest_range;
+  int zstd_level = 3;  ///< 1 to 22; docs/rcpcc.md has what each costs
+};
+
+/// Options of an encoder.
+struct EncoderOptions {
+  CodecId codec = CodecId::rcpcc;
+  Crop crop;
+  RcpccOptions rcpcc;
+};
+
+/// Makes frames of sweeps. Keeps its buffers: from the second sweep of a kind on, `encode`
+/// allocates nothing. One thread at a time may use an encoder; different encoders share nothing.
+class Encoder {
+ public:
+  /// Checks the options. Errors: invalid_argument, with the option and its range.
+  [[nodiscard]] static Result<Encoder> create(const EncoderOptions& options);
+
+  Encoder(Encoder&&) noexcept;
+  Encoder& operator=(Encoder&&) noexcept;
+  ~Encoder();
+
+  /// Encodes one sweep into a frame. The bytes stay valid until the next call.
+  /// Points that cannot be coded are left out and counted, see `last_counts`; a sweep without a
+  /// single codable point gives a frame that decodes to an empty cloud.
+  /// Errors: invalid_argument (coordinates missing, sensor name too long), limit (over 2^24
+  /// points).
+  [[nodiscard]] Result<std::span<const std::byte>> encode(const CloudView& cloud,
+                                                          const SweepInfo& info);
+
+  /// Where the points of the last encoded sweep went.
+  [[nodiscard]] const SweepCounts& last_counts() const noexcept;
+
+ private:
+  struct State;
+  explicit Encoder(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace sweepcast

@@ -1,0 +1,1 @@
+// codec/entropy/zstd_coder

@@ -1,0 +1,1 @@
+// io/cloud_file

@@ -1,0 +1,1 @@
+// io/sweep_reader

@@ -1,0 +1,1 @@
+# The examples, built against an installed tree.
