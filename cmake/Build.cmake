@@ -2,7 +2,7 @@
 
 add_library(sweepcast_build INTERFACE)
 target_compile_options(sweepcast_build INTERFACE
-  -Wall -Wextra -Wconversion -Wshadow -Werror
+  -Wall -Wextra -Wconversion -Wshadow $<$<BOOL:${SWEEPCAST_WERROR}>:-Werror>
   # Clouds must be the same on every machine: no fused multiply-add behind the source's back.
   -ffp-contract=off)
 if(SWEEPCAST_SANITIZE)

@@ -1,9 +1,13 @@
 # What this build can have. A part whose library is absent is turned off, aloud;
 # `sweepcast --version` lists the outcome.
 
+# Seen from the parent project too, where this one is a subdirectory.
+set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)
+
 find_package(PkgConfig REQUIRED)
 find_package(tl-expected REQUIRED)
-pkg_check_modules(zstd REQUIRED IMPORTED_TARGET libzstd)
+pkg_check_modules(zstd REQUIRED IMPORTED_TARGET GLOBAL libzstd)
+find_package(liblzf REQUIRED)  # PCD's binary_compressed
 
 set(SWEEPCAST_COMPONENTS "")
 
@@ -21,18 +25,29 @@ function(sweepcast_component name found package what)
   endif()
 endfunction()
 
-find_package(embree 3 QUIET)
-sweepcast_component(embree "${embree_FOUND}" libembree-dev "the simulator")
-find_package(draco QUIET)
-sweepcast_component(draco "${draco_FOUND}" libdraco-dev "the comparison with Draco")
-
-if(SWEEPCAST_APPS)
+if(SWEEPCAST_APPS OR SWEEPCAST_TESTS)
   find_package(CLI11 REQUIRED)
   find_package(fmt REQUIRED)
   find_package(nlohmann_json REQUIRED)
-endif()
-if(SWEEPCAST_APPS OR SWEEPCAST_TESTS)
   find_package(nanoflann REQUIRED)
   find_package(Eigen3 REQUIRED)
+  find_package(embree 3 QUIET)
+  sweepcast_component(embree "${embree_FOUND}" libembree-dev "the simulator")
+  find_package(draco QUIET)
+  sweepcast_component(draco "${draco_FOUND}" libdraco-dev "the comparison with Draco")
 endif()
-find_package(liblzf REQUIRED)  # PCD's binary_compressed
+
+if(SWEEPCAST_TESTS)
+  find_package(GTest QUIET)
+  if(NOT GTest_FOUND)
+    set(SWEEPCAST_TESTS OFF)
+    message(STATUS "tests: OFF. To have them: apt-get install libgtest-dev")
+  endif()
+endif()
+if(SWEEPCAST_BENCH)
+  find_package(benchmark QUIET)
+  if(NOT benchmark_FOUND)
+    set(SWEEPCAST_BENCH OFF)
+    message(STATUS "benchmarks: OFF. To have them: apt-get install libbenchmark-dev")
+  endif()
+endif()

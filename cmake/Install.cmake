@@ -1,1 +1,47 @@
-# filled by the installer
+# What `cmake --install` puts where. Three components, so that a robot may install little:
+#   runtime      the tool `sweepcast`, and the libraries where they are shared
+#   lab          `sweepcast-lab`, which needs heavy libraries; `sweepcast` runs it
+#   development  headers, static libraries, CMake package, pkg-config files
+
+include(CMakePackageConfigHelpers)
+
+# Before 1.0 every minor version may change the binary interface.
+set_target_properties(sweepcast sweepcast_io PROPERTIES
+  VERSION ${PROJECT_VERSION}
+  SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+
+install(TARGETS sweepcast sweepcast_io EXPORT sweepcast-targets
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime NAMELINK_COMPONENT development
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/sweepcast
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development FILES_MATCHING PATTERN *.hpp)
+
+set(cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/sweepcast)
+get_target_property(library_type sweepcast TYPE)  # the config file asks: STATIC_LIBRARY?
+configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/sweepcast-config.cmake.in
+  ${PROJECT_BINARY_DIR}/sweepcast-config.cmake INSTALL_DESTINATION ${cmake_dir})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/sweepcast-config-version.cmake
+  COMPATIBILITY SameMinorVersion)
+install(EXPORT sweepcast-targets NAMESPACE sweepcast:: DESTINATION ${cmake_dir}
+  COMPONENT development)
+install(FILES ${PROJECT_BINARY_DIR}/sweepcast-config.cmake
+              ${PROJECT_BINARY_DIR}/sweepcast-config-version.cmake
+  DESTINATION ${cmake_dir} COMPONENT development)
+
+# The pkg-config files find their prefix from their own place, so the tree may be moved.
+set(pc_dir ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+file(RELATIVE_PATH pc_to_prefix /prefix/${pc_dir} /prefix)
+foreach(name sweepcast sweepcast-io)
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/${name}.pc.in ${PROJECT_BINARY_DIR}/${name}.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/${name}.pc DESTINATION ${pc_dir} COMPONENT development)
+endforeach()
+
+if(SWEEPCAST_APPS)
+  # Shared libraries are found beside the tools, wherever the tree lies.
+  file(RELATIVE_PATH bin_to_lib /prefix/${CMAKE_INSTALL_BINDIR} /prefix/${CMAKE_INSTALL_LIBDIR})
+  set_target_properties(sweepcast_tool sweepcast_lab_tool PROPERTIES
+    INSTALL_RPATH "$ORIGIN/${bin_to_lib}")
+  install(TARGETS sweepcast_tool DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
+  install(TARGETS sweepcast_lab_tool DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT lab)
+endif()
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
