@@ -8,7 +8,8 @@ include(CMakePackageConfigHelpers)
 # Before 1.0 every minor version may change the binary interface.
 set_target_properties(sweepcast sweepcast_io PROPERTIES
   VERSION ${PROJECT_VERSION}
-  SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
+  INSTALL_RPATH $ORIGIN)
 
 install(TARGETS sweepcast sweepcast_io EXPORT sweepcast-targets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime NAMELINK_COMPONENT development

@@ -1,0 +1,18 @@
+# The libraries as shared objects, installed, and used both ways.
+include(${CMAKE_CURRENT_LIST_DIR}/common.cmake)
+set(prefix ${WORK}/shared_prefix)
+file(REMOVE_RECURSE ${prefix})
+build(${SOURCE} ${WORK}/shared -D BUILD_SHARED_LIBS=ON -D SWEEPCAST_APPS=OFF
+      -D SWEEPCAST_TESTS=OFF -D SWEEPCAST_BENCH=OFF -D CMAKE_INSTALL_LIBDIR=lib)
+run(${CMAKE_COMMAND} --install ${WORK}/shared --prefix ${prefix})
+file(GLOB libraries RELATIVE ${prefix}/lib ${prefix}/lib/libsweepcast.so.*.*.*)
+list(LENGTH libraries count)
+if(NOT count EQUAL 1)
+  message(FATAL_ERROR "expected one versioned libsweepcast.so in ${prefix}/lib: '${libraries}'")
+endif()
+build(${SOURCE}/examples/cmake ${WORK}/shared_cmake -D CMAKE_PREFIX_PATH=${prefix})
+run(${WORK}/shared_cmake/roundtrip)
+file(REMOVE_RECURSE ${WORK}/shared_pkg-config)
+set(ENV{PKG_CONFIG_PATH} ${prefix}/lib/pkgconfig)
+set(ENV{LD_LIBRARY_PATH} ${prefix}/lib)
+run(make -C ${SOURCE}/examples/pkg-config BUILD=${WORK}/shared_pkg-config CXX=${CXX} run)

@@ -1,0 +1,17 @@
+# Installs the build tree, moves it, and runs the tool from there: nothing may point back.
+include(${CMAKE_CURRENT_LIST_DIR}/common.cmake)
+file(REMOVE_RECURSE ${PREFIX} ${PREFIX}.first)
+run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${PREFIX}.first)
+file(RENAME ${PREFIX}.first ${PREFIX})
+if(EXISTS ${BUILD}/sweepcast)
+  run(${PREFIX}/bin/sweepcast --version)
+  run(${PREFIX}/bin/sweepcast simulate --help)  # finds sweepcast-lab
+endif()
+file(GLOB_RECURSE texts ${PREFIX}/*.cmake ${PREFIX}/*.pc)
+foreach(file IN LISTS texts)
+  file(READ ${file} text)
+  string(FIND "${text}" ${SOURCE} at)
+  if(NOT at EQUAL -1)
+    message(FATAL_ERROR "${file} names the source tree ${SOURCE}")
+  endif()
+endforeach()
