@@ -1,1 +1,2 @@
 # Tests of src/lab.
+sweepcast_test(lab/distortion sweepcast_measure)
