@@ -1,25 +1,103 @@
 #include "common/command.hpp"
 
+#include <fcntl.h>
 #include <fmt/core.h>
+#include <unistd.h>
 
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <exception>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 namespace sweepcast::app {
 
-int run(CLI::App& app, const Command& command, int argc, char** argv) {
+namespace {
+
+/// Makes the standard streams safe to write files beside. A stream that the caller closed would
+/// lend its number to the next file opened, which then took our messages in; so the number is
+/// occupied, in the direction that cannot be used. A reader that went away, or a limit on file
+/// sizes, shall be an error to report and not a signal that ends the work half done.
+void guard_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(stream, F_GETFD) != -1) continue;
+    const int flags = stream == STDIN_FILENO ? O_WRONLY : O_RDONLY;
+    if (open("/dev/null", flags) != stream) std::_Exit(1);  // NOLINT: open is variadic
+  }
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
+/// Flushes standard output; a result that did not arrive makes a success a failure.
+int finish(int exit_status) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return exit_status;
+  const int reason = errno;
+  if (exit_status != 0) return exit_status;
+  if (reason != EPIPE) {  // `| head` has what it wanted
+    print_error(
+        fmt::format("standard output: {}; the result above is incomplete, send it elsewhere",
+                    std::strerror(reason)));
+  }
+  return 1;
+}
+
+/// The program or subcommand that was called without any argument; null where there are some.
+CLI::App* called_bare(CLI::App& app, int argc, char** argv) {
+  if (argc < 2) return &app;
+  const auto called = [argv](const CLI::App* sub) { return sub->check_name(argv[1]); };
+  const auto subs = argc == 2 ? app.get_subcommands(called) : std::vector<CLI::App*>{};
+  return subs.empty() ? nullptr : subs.front();
+}
+
+/// Says what is wrong with the command line, and where to read how it should be.
+int refuse(const CLI::App& app, const CLI::ParseError& error) {
+  std::string command = app.get_name();
+  for (const CLI::App* sub : app.get_subcommands()) command += " " + sub->get_name();
+  print_error(fmt::format("{}; see `{} --help`", error.what(), command));
+  return 2;
+}
+
+int run_command(CLI::App& app, const Command& command, int argc, char** argv) {
   try {
     app.parse(argc, argv);
     const Status status = command ? command() : Status{};
     if (status) return 0;
-    fmt::print(stderr, "{}: error: {}\n", app.get_name(), status.error().message);
+    print_error(status.error().message);
     return 1;
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+    return error.get_exit_code() == 0 ? app.exit(error) : refuse(app, error);
   } catch (const std::exception& error) {  // a library's; ours come as Status
-    fmt::print(stderr, "{}: error: {}\n", app.get_name(), error.what());
+    print_error(error.what());
     return 1;
   }
+}
+
+}  // namespace
+
+int run(CLI::App& app, const Command& command, int argc, char** argv) {
+  guard_standard_streams();
+  if (const CLI::App* bare = called_bare(app, argc, argv)) {
+    fmt::print(stderr, "{}", bare->help(bare == &app ? "" : app.get_name()));
+    return 2;
+  }
+  return finish(run_command(app, command, argc, argv));
+}
+
+void print_error(std::string_view message) {
+  fmt::print(stderr, "sweepcast: error: {}\n", message);
+}
+
+void print_note(std::string_view message) {
+  fmt::print(stderr, "sweepcast: note: {}\n", message);
+}
+
+void print_json(const nlohmann::ordered_json& value) {
+  constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;
+  const std::string text = value.dump(2, ' ', false, kReplace) + "\n";
+  std::fwrite(text.data(), 1, text.size(), stdout);  // `run` checks the stream at the end
 }
 
 }  // namespace sweepcast::app

@@ -3,6 +3,8 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <string_view>
 
 #include "sweepcast/status.hpp"
 
@@ -12,7 +14,19 @@ namespace sweepcast::app {
 using Command = std::function<Status()>;
 
 /// Runs a program: parses, runs the command, prints "PROGRAM: error: ..." to standard error.
-/// Returns the exit status: 0, 1 where the work failed, 2 where the command line is wrong.
+/// Where no argument follows the program's or a subcommand's name, prints the help instead.
+/// Returns the exit status: 0, 1 where the work failed or standard output could not take the
+/// result, 2 where the command line is wrong.
 [[nodiscard]] int run(CLI::App& app, const Command& command, int argc, char** argv);
+
+/// Prints "sweepcast: error: MESSAGE" to standard error, for a command that goes on after it.
+void print_error(std::string_view message);
+
+/// Prints "sweepcast: note: MESSAGE" to standard error: worth knowing, but no failure.
+void print_note(std::string_view message);
+
+/// Prints a value to standard output, indented, and a line's end. Bytes that are not UTF-8, as a
+/// file's name may have, become U+FFFD.
+void print_json(const nlohmann::ordered_json& value);
 
 }  // namespace sweepcast::app

@@ -1,15 +1,28 @@
+#include <fmt/core.h>
+#include <zstd.h>
+
+#include "common/build_info.hpp"
 #include "sweepcast/commands.hpp"
 
 int main(int argc, char** argv) {
+  using namespace sweepcast::app;
+  if (argc > 1 && is_lab_command(argv[1])) return run_lab(argv);
   CLI::App app{"Compresses LiDAR sweeps, gives them back, and measures what was lost.",
                "sweepcast"};
+  app.set_version_flag("--version", [] {
+    return fmt::format("sweepcast {}\ncomponents: {}\nzstd: {}", kVersion, kComponents,
+                       ZSTD_versionString());
+  });
+  app.footer(
+      "Example: sweepcast encode drive/sweeps -o drive.sweep\n"
+      "Each command has its own help, as in `sweepcast encode --help`.");
   app.require_subcommand(1);
-  sweepcast::app::Command command;
-  sweepcast::app::add_encode(app, command);
-  sweepcast::app::add_decode(app, command);
-  sweepcast::app::add_info(app, command);
-  sweepcast::app::add_verify(app, command);
-  sweepcast::app::add_compare(app, command);
-  sweepcast::app::add_lab(app, command);
-  return sweepcast::app::run(app, command, argc, argv);
+  Command command;
+  add_encode(app, command);
+  add_decode(app, command);
+  add_info(app, command);
+  add_verify(app, command);
+  add_compare(app, command);
+  add_lab(app);
+  return run(app, command, argc, argv);
 }

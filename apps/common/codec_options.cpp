@@ -1,0 +1,168 @@
+#include "common/codec_options.hpp"
+
+#include <fmt/core.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <string>
+#include <string_view>
+
+namespace sweepcast::app {
+
+namespace {
+
+/// Reads exactly N finite numbers separated by commas; throws CLI::ValidationError otherwise.
+template <std::size_t N>
+std::array<double, N> parse_numbers(const std::string& option, const std::string& text,
+                                    std::string_view form) {
+  std::array<double, N> numbers{};
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (std::size_t i = 0; i < N; ++i) {
+    const auto [next, error] = std::from_chars(at, end, numbers[i]);
+    const bool separated = i + 1 < N ? next != end && *next == ',' : next == end;
+    if (error != std::errc{} || !separated || !std::isfinite(numbers[i])) {
+      throw CLI::ValidationError(
+          option, fmt::format("\"{}\" is not {}: {} numbers, separated by commas", text, form, N));
+    }
+    at = next + (i + 1 < N ? 1 : 0);
+  }
+  return numbers;
+}
+
+/// Adds an option that takes N numbers in one argument, and hands them to `take`.
+template <std::size_t N, class Take>
+CLI::Option* add_numbers(CLI::App& app, const std::string& option, const std::string& form,
+                         const std::string& help, Take take) {
+  return app
+      .add_option_function<std::string>(
+          option,
+          [option, form, take](const std::string& text) {
+            take(parse_numbers<N>(option, text, form));
+          },
+          help)
+      ->type_name(form);
+}
+
+/// Adds an option whose value is one of a few words.
+template <class Enum>
+CLI::Option* add_choice(CLI::App& app, const std::string& option, Enum& value,
+                        const std::map<std::string, Enum>& words, const std::string& help) {
+  std::string list;
+  for (const auto& [word, meaning] : words) list += (list.empty() ? "" : "|") + word;
+  return app
+      .add_option_function<std::string>(
+          option,
+          [option, words, list, &value](const std::string& text) {
+            const auto found = words.find(text);
+            if (found == words.end()) {
+              throw CLI::ValidationError(option,
+                                         fmt::format("\"{}\" is not one of {}", text, list));
+            }
+            value = found->second;
+          },
+          help)
+      ->type_name(list);
+}
+
+Box box_of(const std::array<double, 6>& c, const std::string& option) {
+  if (c[0] > c[3] || c[1] > c[4] || c[2] > c[5]) {
+    throw CLI::ValidationError(option, "the first corner must not exceed the second in any axis");
+  }
+  const auto f = [](double value) { return static_cast<float>(value); };
+  return {f(c[0]), f(c[1]), f(c[2]), f(c[3]), f(c[4]), f(c[5])};
+}
+
+void add_quality(CLI::App& app, RcpccOptions& rcpcc) {
+  auto* level = app.add_option_function<int>(
+                       "--level",
+                       [&rcpcc](int chosen) {
+                         rcpcc.params = kRcpccLevels.at(static_cast<std::size_t>(chosen));
+                       },
+                       "Level of the released code, 0 the finest")
+                    ->check(CLI::Range(0, static_cast<int>(kRcpccLevels.size()) - 1))
+                    ->type_name("0..5");
+  auto* params =
+      add_numbers<4>(app, "--params", "AZIMUTH,ELEVATION,THRESHOLD,QSTEP",
+                     "Steps in degrees, threshold and quantiser step in metres [0.5,0.5,0.3,0.2]",
+                     [&rcpcc](const std::array<double, 4>& p) {
+                       rcpcc.params = {p[0], p[1], p[2], p[3]};
+                     });
+  level->excludes(params);
+}
+
+void add_view(CLI::App& app, RcpccOptions& rcpcc) {
+  add_numbers<2>(app, "--fov-elevation", "MIN,MAX", "Field of view in degrees [-90,90]",
+                 [&rcpcc](const std::array<double, 2>& v) {
+                   rcpcc.elevation_min_deg = v[0];
+                   rcpcc.elevation_max_deg = v[1];
+                 });
+  add_numbers<2>(app, "--fov-azimuth", "MIN,MAX",
+                 "Field of view in degrees; MIN above MAX crosses 180 [-180,180]",
+                 [&rcpcc](const std::array<double, 2>& v) {
+                   rcpcc.azimuth_min_deg = v[0];
+                   rcpcc.azimuth_max_deg = v[1];
+                 });
+  app.add_option("--max-range", rcpcc.max_range_m, "Farther points count as out of view [500]")
+      ->type_name("METRES");
+}
+
+}  // namespace
+
+void add_codec_options(CLI::App& app, EncoderOptions& options) {
+  RcpccOptions& rcpcc = options.rcpcc;
+  add_choice<CodecId>(app, "--codec", options.codec, {{"rcpcc", CodecId::rcpcc}},
+                      "How sweeps are coded [rcpcc]");
+  add_quality(app, rcpcc);
+  app.add_option("--block", rcpcc.block_size, "Side of a macroblock in cells [4]")
+      ->check(CLI::IsMember({4, 8, 16}))
+      ->type_name("4|8|16");
+  app.add_option("--region", rcpcc.region_size, "Side of an SA-DCT region in cells [16]")
+      ->check(CLI::IsMember({8, 16, 32}))
+      ->type_name("8|16|32");
+  add_choice<SurfaceModel>(app, "--model", rcpcc.model,
+                           {{"surface", SurfaceModel::surface}, {"plane", SurfaceModel::plane}},
+                           "What a block is fitted with [surface]");
+  add_choice<UnfitCoding>(app, "--unfit", rcpcc.unfit,
+                          {{"sa-dct", UnfitCoding::sa_dct}, {"raw", UnfitCoding::raw}},
+                          "How points are coded that no surface fits [sa-dct]");
+  add_choice<Rounding>(app, "--quantiser", rcpcc.rounding,
+                       {{"nearest", Rounding::nearest}, {"truncate", Rounding::truncate}},
+                       "How the quantiser rounds; truncate is for comparison only [nearest]");
+  add_choice<CollisionRule>(
+      app, "--collision", rcpcc.collision,
+      {{"range", CollisionRule::nearest_range}, {"centre", CollisionRule::nearest_centre}},
+      "Which point a cell keeps: the one nearest to the sensor, or to the "
+      "cell's centre [range]");
+  app.add_option("--zstd", rcpcc.zstd_level, "Level of zstd [3]")
+      ->check(CLI::Range(1, 22))
+      ->type_name("1..22");
+  add_view(app, rcpcc);
+}
+
+void add_crop_options(CLI::App& app, Crop& crop) {
+  add_numbers<2>(app, "--crop-range", "MIN,MAX",
+                 "Leave out points nearer or farther, metres; MAX 0: no limit",
+                 [&crop](const std::array<double, 2>& range) {
+                   crop.min_range = static_cast<float>(range[0]);
+                   crop.max_range = static_cast<float>(range[1]);
+                 });
+  add_numbers<6>(
+      app, "--crop-box", "X0,Y0,Z0,X1,Y1,Z1", "Leave out points outside, metres",
+      [&crop](const std::array<double, 6>& corners) { crop.keep = box_of(corners, "--crop-box"); });
+  add_numbers<6>(app, "--crop-robot", "X0,Y0,Z0,X1,Y1,Z1",
+                 "Leave out points inside: the robot's own body, metres",
+                 [&crop](const std::array<double, 6>& corners) {
+                   crop.robot = box_of(corners, "--crop-robot");
+                 });
+}
+
+void require_valid(const EncoderOptions& options) {
+  const auto encoder = Encoder::create(options);
+  if (!encoder) throw CLI::ValidationError(encoder.error().message);
+}
+
+}  // namespace sweepcast::app

@@ -1,0 +1,13 @@
+#include "common/cpu_time.hpp"
+
+#include <ctime>
+
+namespace sweepcast::app {
+
+double cpu_time_ms() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
+}
+
+}  // namespace sweepcast::app

@@ -1,0 +1,53 @@
+#include "common/recording.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstdint>
+
+namespace sweepcast::app {
+
+namespace {
+
+bool is_plain_file_name(const std::string& name) {
+  const auto is_harmful = [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return byte < 0x20 || byte == 0x7F || c == '/' || c == '\\';
+  };
+  return name != "." && name != ".." && std::none_of(name.begin(), name.end(), is_harmful);
+}
+
+}  // namespace
+
+Status check_complete(const std::filesystem::path& path, const SweepReader& reader) {
+  if (!reader.was_cut()) return {};
+  std::uint64_t end = 0;
+  for (const SweepEntry& entry : reader.entries()) end = std::max(end, entry.offset + entry.size);
+  if (end == reader.file_size()) return {};
+  return fail(ErrorCode::truncated,
+              fmt::format("{}: cut short or damaged behind its last whole frame: {} frames are "
+                          "there, what followed is lost; encode or fetch the rest again",
+                          path.string(), reader.entries().size()));
+}
+
+std::string frame_error(const std::filesystem::path& path, const SweepReader& reader, std::size_t i,
+                        const std::string& what) {
+  const std::string& name = reader.entries()[i].name;
+  const bool printable = !name.empty() && is_plain_file_name(name);
+  const std::string known = printable ? fmt::format(" ({})", name) : "";
+  return fmt::format("{}: frame {}{}: {}", path.string(), i, known, what);
+}
+
+Result<std::string> SweepNames::next(const SweepEntry& entry, const FrameHeader& header) {
+  if (!is_plain_file_name(entry.name)) {
+    return fail(ErrorCode::corrupt,
+                "its name is not a plain file name, so the file is damaged or was made to do "
+                "harm; get it again from a source that you trust");
+  }
+  const std::string base = entry.name.empty() ? fmt::format("{:06}", header.sequence) : entry.name;
+  std::string name = base;
+  for (int i = 2; !used_.insert(name).second; ++i) name = fmt::format("{}-{}", base, i);
+  return name;
+}
+
+}  // namespace sweepcast::app

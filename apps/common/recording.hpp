@@ -1,0 +1,36 @@
+// The frames of a .sweep file, one after the other, as the commands that read one need them.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <unordered_set>
+
+#include "sweepcast/frame.hpp"
+#include "sweepcast/sweep_file.hpp"
+
+namespace sweepcast::app {
+
+/// Says whether a file holds everything that was written to it.
+/// No error where the index is sound, or where only the index is missing, as in a recording that
+/// goes on or ended without notice between two frames. Error truncated where bytes follow the last
+/// whole frame that belong to no frame: what they were is lost.
+[[nodiscard]] Status check_complete(const std::filesystem::path& path, const SweepReader& reader);
+
+/// "FILE: frame 3 (000012): WHAT".
+[[nodiscard]] std::string frame_error(const std::filesystem::path& path, const SweepReader& reader,
+                                      std::size_t i, const std::string& what);
+
+/// Names the sweeps of a file so that each can become a file of its own in one folder.
+class SweepNames {
+ public:
+  /// The entry's own name; where it is empty, the frame's sequence number with six digits. A name
+  /// that came before gets "-2", "-3" and so on behind it.
+  /// Error corrupt: the name could lead out of the folder, or holds a control character.
+  [[nodiscard]] Result<std::string> next(const SweepEntry& entry, const FrameHeader& header);
+
+ private:
+  std::unordered_set<std::string> used_;
+};
+
+}  // namespace sweepcast::app
