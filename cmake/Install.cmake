@@ -38,11 +38,13 @@ foreach(name sweepcast sweepcast-io)
 endforeach()
 
 if(SWEEPCAST_APPS)
-  # Shared libraries are found beside the tools, wherever the tree lies.
-  file(RELATIVE_PATH bin_to_lib /prefix/${CMAKE_INSTALL_BINDIR} /prefix/${CMAKE_INSTALL_LIBDIR})
-  set_target_properties(sweepcast_tool sweepcast_lab_tool PROPERTIES
-    INSTALL_RPATH "$ORIGIN/${bin_to_lib}")
-  install(TARGETS sweepcast_tool DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
-  install(TARGETS sweepcast_lab_tool DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT lab)
+  # install_tool(TARGET FOLDER COMPONENT): it finds shared libraries wherever the tree lies.
+  function(install_tool target folder component)
+    file(RELATIVE_PATH to_lib /prefix/${folder} /prefix/${CMAKE_INSTALL_LIBDIR})
+    set_target_properties(${target} PROPERTIES INSTALL_RPATH "$ORIGIN/${to_lib}")
+    install(TARGETS ${target} DESTINATION ${folder} COMPONENT ${component})
+  endfunction()
+  install_tool(sweepcast_tool ${CMAKE_INSTALL_BINDIR} runtime)
+  install_tool(sweepcast_lab_tool ${CMAKE_INSTALL_LIBEXECDIR}/sweepcast lab)
 endif()
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
