@@ -24,7 +24,8 @@ stop_ticker() {
 trap stop_ticker EXIT
 
 # step WHAT NAME COMMAND...: runs the command; its output goes to $logs/NAME.log and is shown, the
-# last 40 lines of it, only where the command fails, which ends the script.
+# last 40 lines of it, only where the command fails, which ends the script. In a function that is
+# such a command `set -e` has no effect: chain what it does with &&.
 step() {
   local what=$1 log=$logs/$2.log begin=$SECONDS status=0
   shift 2
