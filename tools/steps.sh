@@ -26,6 +26,7 @@ trap stop_ticker EXIT
 # step WHAT NAME COMMAND...: runs the command; its output goes to $logs/NAME.log and is shown, the
 # last 40 lines of it, only where the command fails, which ends the script. In a function that is
 # such a command `set -e` has no effect: chain what it does with &&.
+# With own_progress=yes the command draws on the terminal itself.
 step() {
   local what=$1 log=$logs/$2.log begin=$SECONDS status=0
   shift 2
@@ -33,12 +34,16 @@ step() {
   echo "[$step_number/$steps] $what"
   mkdir -p "$logs"
   : >"$log"
-  if [[ -t 1 ]]; then
+  if [[ -t 2 && ${own_progress:-no} == yes ]]; then
+    "$@" >"$log" || status=$?
+  elif [[ -t 1 ]]; then
     show_log "$log" &
     ticker=$!
+    "$@" >"$log" 2>&1 || status=$?
+    stop_ticker
+  else
+    "$@" >"$log" 2>&1 || status=$?
   fi
-  "$@" >"$log" 2>&1 || status=$?
-  stop_ticker
   if ((status != 0)); then
     tail -n 40 "$log"
     echo "FAILED: $what (status $status). All of it is in $log"
