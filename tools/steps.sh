@@ -1,3 +1,4 @@
+# shellcheck shell=bash disable=SC2154
 # Sourced by quickstart and check: numbered steps, each with its time, its log, and progress on a
 # terminal. The caller sets `steps`, the number of steps, and `logs`, a folder.
 
