@@ -6,7 +6,9 @@ target_compile_options(sweepcast_build INTERFACE
   # g++ 12 sees overlaps in std::string's operator+ that are not there (its bug 105651).
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>
   # Clouds must be the same on every machine: no fused multiply-add behind the source's back.
-  -ffp-contract=off)
+  -ffp-contract=off
+  # Nobody reads errno or floating-point traps; without them square roots and choices vectorise.
+  -fno-math-errno -fno-trapping-math)
 if(SWEEPCAST_SANITIZE)
   target_compile_options(sweepcast_build INTERFACE
     -fsanitize=${SWEEPCAST_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)

@@ -46,8 +46,11 @@ enum class Rounding : std::uint8_t {
   truncate,  ///< towards zero, as the released code does; for comparison only
 };
 
-/// Which point a cell keeps when several fall into it.
-enum class CollisionRule : std::uint8_t { nearest_range, nearest_centre };
+/// Which point a cell keeps when several fall into it. The others are counted as collided.
+enum class CollisionRule : std::uint8_t {
+  nearest_centre,  ///< the one nearest to the cell's centre; of equally near ones the shorter range
+  nearest_range,   ///< the one nearest to the sensor
+};
 
 /// Options of codec `rcpcc`. The defaults are the paper's timing setting.
 struct RcpccOptions {
@@ -58,12 +61,12 @@ struct RcpccOptions {
   double azimuth_max_deg = 180.0;
   double max_range_m = 500.0;  ///< farther points count as out of view
   int block_size = 4;          ///< side of a macroblock in cells: 4, 8 or 16
-  int region_size = 16;        ///< side of an SA-DCT region in cells: 8, 16 or 32
+  int region_size = 4;         ///< side of an SA-DCT region in cells: 4, 8, 16 or 32
   SurfaceModel model = SurfaceModel::surface;
   UnfitCoding unfit = UnfitCoding::sa_dct;
   Rounding rounding = Rounding::nearest;
-  CollisionRule collision = CollisionRule::nearest_range;
-  int zstd_level = 3;  ///< 1 to 22; docs/rcpcc.md has what each costs
+  CollisionRule collision = CollisionRule::nearest_centre;
+  int zstd_level = 1;  ///< 1 to 22; docs/rcpcc.md has what each costs
 };
 
 /// Options of an encoder.

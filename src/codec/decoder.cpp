@@ -1,17 +1,43 @@
 #include "sweepcast/decoder.hpp"
+
+#include "codec/rcpcc/codec.hpp"
+
 namespace sweepcast {
+
 struct Decoder::State {
+  DecoderOptions options;
   FrameHeader header;
+  rcpcc::Decoder rcpcc;
+
+  Status decode(std::span<const std::byte> frame, PointCloud& cloud) {
+    if (const Status status = parse_frame_header(frame, header); !status) return status;
+    if (header.frame_size > frame.size()) {
+      return fail(ErrorCode::truncated, "the frame is cut short");
+    }
+    if (header.counts.points_coded > options.max_points) {
+      return fail(ErrorCode::limit, "the frame holds more points than the decoder may give");
+    }
+    if (header.codec != CodecId::rcpcc) {
+      return fail(ErrorCode::unsupported, "the frame's codec is unknown; update this program");
+    }
+    return rcpcc.decode(frame, header, cloud);
+  }
 };
-Decoder::Decoder(const DecoderOptions&) : state_(std::make_unique<State>()) {}
+
+Decoder::Decoder(const DecoderOptions& options)
+    : state_(std::make_unique<State>(State{options, {}, {}})) {}
 Decoder::Decoder(Decoder&&) noexcept = default;
 Decoder& Decoder::operator=(Decoder&&) noexcept = default;
 Decoder::~Decoder() = default;
-Status Decoder::decode(std::span<const std::byte>, PointCloud& cloud) {
-  cloud.clear();
-  return fail(ErrorCode::unsupported, "not there yet");
+
+Status Decoder::decode(std::span<const std::byte> frame, PointCloud& cloud) {
+  Status status = state_->decode(frame, cloud);
+  if (!status) cloud.clear();
+  return status;
 }
+
 const FrameHeader& Decoder::last_header() const noexcept {
   return state_->header;
 }
+
 }  // namespace sweepcast

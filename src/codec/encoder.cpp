@@ -1,19 +1,67 @@
 #include "sweepcast/encoder.hpp"
+
+#include "codec/frame_layout.hpp"
+#include "codec/rcpcc/codec.hpp"
+
 namespace sweepcast {
+namespace {
+
+constexpr std::size_t kMostPoints = std::size_t{1} << 24;
+constexpr std::size_t kLongestName = 255;
+
+Status check(const CloudView& cloud, const SweepInfo& info) {
+  if (cloud.size > 0 && !(cloud.x.present() && cloud.y.present() && cloud.z.present())) {
+    return fail(ErrorCode::invalid_argument, "the cloud lacks x, y or z");
+  }
+  if (cloud.size > kMostPoints) {
+    return fail(ErrorCode::limit, "the cloud has more than 2^24 points; split it into sweeps");
+  }
+  if (info.sensor.size() > kLongestName) {
+    return fail(ErrorCode::invalid_argument, "the sensor's name has more than 255 bytes");
+  }
+  return {};
+}
+
+}  // namespace
+
 struct Encoder::State {
+  explicit State(const EncoderOptions& options)
+      : codec(options.codec), rcpcc(options.rcpcc, options.crop) {}
+
+  CodecId codec;
+  rcpcc::Encoder rcpcc;
+  PartList parts;
   SweepCounts counts;
+  std::vector<std::byte> frame;
 };
+
 Encoder::Encoder(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Encoder::Encoder(Encoder&&) noexcept = default;
 Encoder& Encoder::operator=(Encoder&&) noexcept = default;
 Encoder::~Encoder() = default;
-Result<Encoder> Encoder::create(const EncoderOptions&) {
-  return Encoder(std::make_unique<State>());
+
+Result<Encoder> Encoder::create(const EncoderOptions& options) {
+  if (options.codec != CodecId::rcpcc) {
+    return fail(ErrorCode::unsupported, "there is no encoder for this codec");
+  }
+  if (const Status status = rcpcc::check(options.rcpcc); !status) {
+    return tl::unexpected(status.error());
+  }
+  return Encoder(std::make_unique<State>(options));
 }
-Result<std::span<const std::byte>> Encoder::encode(const CloudView&, const SweepInfo&) {
-  return fail(ErrorCode::unsupported, "not there yet");
+
+Result<std::span<const std::byte>> Encoder::encode(const CloudView& cloud, const SweepInfo& info) {
+  if (const Status status = check(cloud, info); !status) return tl::unexpected(status.error());
+  State& s = *state_;
+  if (const Status status = s.rcpcc.encode(cloud, s.parts, s.counts); !status) {
+    return tl::unexpected(status.error());
+  }
+  write_frame(s.codec, info, s.counts, s.parts, s.frame);
+  return s.frame;
 }
+
 const SweepCounts& Encoder::last_counts() const noexcept {
   return state_->counts;
 }
+
 }  // namespace sweepcast

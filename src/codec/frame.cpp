@@ -1,12 +1,132 @@
 #include "sweepcast/frame.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "codec/frame_layout.hpp"
+#include "codec/rcpcc/codec.hpp"
+#include "core/bytes.hpp"
+#include "core/crc32.hpp"
+
 namespace sweepcast {
+namespace {
+
+// The counts in the order in which the frame has them.
+constexpr std::array kCounts = {&SweepCounts::points_in,  &SweepCounts::points_coded,
+                                &SweepCounts::not_finite, &SweepCounts::zero_range,
+                                &SweepCounts::cropped,    &SweepCounts::out_of_view,
+                                &SweepCounts::collided};
+
+Status read_head(ByteReader& in, FrameHeader& header) {
+  if (in.get<std::uint32_t>() != kFrameMagic) {
+    return fail(ErrorCode::corrupt, "not a frame: it does not begin with SWPF");
+  }
+  header.version = in.get<std::uint8_t>();
+  if (in.ok() && header.version != kFrameVersion) {
+    return fail(ErrorCode::unsupported, "frame version " + std::to_string(header.version) +
+                                            " is newer than this program; update it");
+  }
+  header.codec = static_cast<CodecId>(in.get<std::uint8_t>());
+  header.sequence = in.get_varint();
+  header.stamp_ns = in.get<std::int64_t>();
+  header.sensor = in.get_text();
+  for (const auto count : kCounts) {
+    header.counts.*count = static_cast<std::uint32_t>(in.get_varint(0xFFFFFFFFU));
+  }
+  header.parts.resize(in.get_varint(kMostParts));
+  for (FramePart& part : header.parts) {
+    part.kind = in.get<std::uint8_t>();
+    part.size = in.get_varint(kLargestFrame);
+    part.crc32 = in.get<std::uint32_t>();
+  }
+  return {};
+}
+
+}  // namespace
+
 std::string_view name(CodecId codec) noexcept {
   return codec == CodecId::rcpcc ? "rcpcc" : "unknown";
 }
-Status parse_frame_header(std::span<const std::byte>, FrameHeader&) {
-  return fail(ErrorCode::unsupported, "not there yet");
+
+std::string_view part_name(CodecId codec, std::uint8_t kind) noexcept {
+  return codec == CodecId::rcpcc ? rcpcc::part_name(kind) : "unknown";
 }
-std::string_view part_name(CodecId, std::uint8_t) noexcept {
-  return "unknown";
+
+Status parse_frame_header(std::span<const std::byte> bytes, FrameHeader& header) {
+  header.parts.clear();
+  ByteReader in(bytes);
+  if (const Status status = read_head(in, header); !status) return status;
+  const std::size_t checked = in.position();
+  const auto checksum = in.get<std::uint32_t>();
+  if (!in.ok()) {
+    // A size beyond its cap stops the reader as the end of the bytes does.
+    return fail(in.remaining() < sizeof(checksum) ? ErrorCode::truncated : ErrorCode::corrupt,
+                "the head of the frame is cut short or damaged");
+  }
+  if (checksum != crc32(bytes.first(checked))) {
+    return fail(ErrorCode::corrupt, "the head of the frame is damaged: its checksum is wrong");
+  }
+  header.header_size = in.position();
+  header.frame_size = header.header_size;
+  for (FramePart& part : header.parts) {
+    part.offset = header.frame_size;
+    header.frame_size += part.size;
+  }
+  if (header.frame_size > kLargestFrame) {
+    return fail(ErrorCode::limit, "the frame announces more than 256 MiB");
+  }
+  return {};
 }
+
+void PartList::clear() {
+  parts_.clear();
+  bytes_.clear();
+}
+
+void PartList::begin(std::uint8_t kind) {
+  parts_.push_back({kind, bytes_.size()});
+}
+
+void write_frame(CodecId codec, const SweepInfo& info, const SweepCounts& counts,
+                 const PartList& parts, std::vector<std::byte>& frame) {
+  ByteWriter out(frame);
+  out.put(kFrameMagic);
+  out.put(kFrameVersion);
+  out.put(static_cast<std::uint8_t>(codec));
+  out.put_varint(info.sequence);
+  out.put(info.stamp_ns);
+  out.put_text(info.sensor);
+  for (const auto count : kCounts) out.put_varint(counts.*count);
+  out.put_varint(parts.parts_.size());
+  const std::span<const std::byte> bytes = parts.bytes_;
+  for (std::size_t i = 0; i < parts.parts_.size(); ++i) {
+    const bool last = i + 1 == parts.parts_.size();
+    const std::size_t begin = parts.parts_[i].begin;
+    const std::size_t size = (last ? bytes.size() : parts.parts_[i + 1].begin) - begin;
+    out.put(parts.parts_[i].kind);
+    out.put_varint(size);
+    out.put(crc32(bytes.subspan(begin, size)));
+  }
+  out.put(crc32(frame));
+  out.put_bytes(bytes);
+}
+
+Result<std::span<const std::byte>> checked_part(std::span<const std::byte> frame,
+                                                const FrameHeader& header, std::uint8_t kind) {
+  const auto part = std::find_if(header.parts.begin(), header.parts.end(),
+                                 [kind](const FramePart& p) { return p.kind == kind; });
+  const std::string what(part_name(header.codec, kind));
+  if (part == header.parts.end()) {
+    return fail(ErrorCode::corrupt, "the frame has no part \"" + what + "\"");
+  }
+  if (part->offset + part->size > frame.size()) {
+    return fail(ErrorCode::truncated, "the frame ends within part \"" + what + "\"");
+  }
+  const auto bytes = frame.subspan(part->offset, part->size);
+  if (crc32(bytes) != part->crc32) {
+    return fail(ErrorCode::corrupt, "part \"" + what + "\" is damaged: its checksum is wrong");
+  }
+  return bytes;
+}
+
 }  // namespace sweepcast

@@ -38,10 +38,14 @@ SinCos sin_cos(double radians) noexcept {
   const auto q = static_cast<double>(quadrant);
   const SinCos r = sin_cos_octant((radians - q * kHalfPiHigh) - q * kHalfPiLow);
   switch (quadrant & 3) {
-    case 0: return r;
-    case 1: return {r.cos, -r.sin};
-    case 2: return {-r.sin, -r.cos};
-    default: return {-r.cos, r.sin};
+    case 0:
+      return r;
+    case 1:
+      return {r.cos, -r.sin};
+    case 2:
+      return {-r.sin, -r.cos};
+    default:
+      return {-r.cos, r.sin};
   }
 }
 

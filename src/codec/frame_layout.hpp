@@ -1,0 +1,50 @@
+// Writing a frame: its head, and the parts that a codec fills. Reading the head is public:
+// `parse_frame_header` in sweepcast/frame.hpp. docs/format.md has the bytes.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sweepcast/frame.hpp"
+
+namespace sweepcast {
+
+inline constexpr std::uint32_t kFrameMagic = 0x46505753;  // "SWPF"
+inline constexpr std::uint8_t kFrameVersion = 1;
+inline constexpr std::size_t kLargestFrame = std::size_t{256} << 20;
+inline constexpr std::size_t kMostParts = 64;
+
+/// Parts of a frame in the making; keeps its memory.
+class PartList {
+ public:
+  void clear();
+
+  /// Begins a part of this kind. Its bytes are what is appended to `bytes()` until the next call.
+  void begin(std::uint8_t kind);
+  [[nodiscard]] std::vector<std::byte>& bytes() { return bytes_; }
+
+ private:
+  struct Part {
+    std::uint8_t kind;
+    std::size_t begin;
+  };
+  std::vector<Part> parts_;
+  std::vector<std::byte> bytes_;
+
+  friend void write_frame(CodecId codec, const SweepInfo& info, const SweepCounts& counts,
+                          const PartList& parts, std::vector<std::byte>& frame);
+};
+
+/// Assembles a frame. `info.sensor` has at most 255 bytes.
+void write_frame(CodecId codec, const SweepInfo& info, const SweepCounts& counts,
+                 const PartList& parts, std::vector<std::byte>& frame);
+
+/// The bytes of part `kind`, after checking that they are all there and undamaged.
+/// Errors: truncated, corrupt.
+[[nodiscard]] Result<std::span<const std::byte>> checked_part(std::span<const std::byte> frame,
+                                                              const FrameHeader& header,
+                                                              std::uint8_t kind);
+
+}  // namespace sweepcast
