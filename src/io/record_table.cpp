@@ -48,6 +48,9 @@ bool has_column(const std::vector<RecordField>& fields, CloudColumn column) {
                      [&](const RecordField& field) { return field.column == column; });
 }
 
+/// Whole seconds whose nanoseconds fit 63 bits: 292 years.
+constexpr std::uint64_t kLongestSeconds = 9'223'372'036U;
+
 /// Puts numbers where they belong in a cloud.
 class CloudFiller {
  public:
@@ -112,9 +115,7 @@ class CloudFiller {
     if (times.empty()) return true;
     const auto [first, last] = std::minmax_element(times.begin(), times.end());
     const auto begin = static_cast<std::uint64_t>(*first);  // differences modulo 2^64 are exact
-    if (static_cast<std::uint64_t>(*last) - begin > std::numeric_limits<std::int64_t>::max()) {
-      return false;
-    }
+    if (static_cast<std::uint64_t>(*last) - begin > kLongestSeconds * 1'000'000'000U) return false;
     for (std::int64_t& time : times) {
       time = static_cast<std::int64_t>(static_cast<std::uint64_t>(time) - begin);
     }
@@ -122,12 +123,11 @@ class CloudFiller {
   }
 
   bool convert_seconds() {
-    constexpr double kLargest = 9.2e9;  // seconds that fit 63 bits as nanoseconds
     double begin = std::numeric_limits<double>::infinity();
     for (const double time : seconds_) begin = std::min(begin, std::isnan(time) ? begin : time);
     for (std::size_t i = 0; i < seconds_.size(); ++i) {
       const double since = std::isnan(seconds_[i]) ? 0.0 : seconds_[i] - begin;
-      if (!(since <= kLargest)) return false;
+      if (!(since <= static_cast<double>(kLongestSeconds))) return false;
       cloud_.time_ns[i] = std::llround(since * 1e9);
     }
     return true;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstring>
 
+#include "codec/frame_layout.hpp"
 #include "core/bytes.hpp"
 #include "core/crc32.hpp"
 
@@ -66,7 +67,7 @@ bool read_entries(std::span<const std::byte> index, std::uint64_t index_begin,
   std::string name;
   for (std::uint64_t i = 0; i < count && reader.ok(); ++i) {
     SweepEntry entry;
-    entry.size = reader.get_varint(kMaxFrameSize);
+    entry.size = reader.get_varint(kLargestFrame);
     const auto shared = reader.get<std::uint8_t>();
     const std::string_view rest = reader.get_text();
     if (shared > name.size() || shared + rest.size() > kMaxNameSize) return false;
@@ -118,7 +119,7 @@ Result<SweepEntry> read_record_head(const ReadAt& read_at, std::uint64_t size, S
   const bool all_there = reader.ok();
   const std::uint32_t crc = crc32(head.first(all_there ? reader.position() : 0));
   const bool sound =
-      reader.get<std::uint32_t>() == crc && reader.ok() && frame_size <= kMaxFrameSize;
+      reader.get<std::uint32_t>() == crc && reader.ok() && frame_size <= kLargestFrame;
   entry.size = frame_size;
   entry.offset = at + reader.position();
   tail = SweepTail::none;
@@ -224,10 +225,8 @@ Status check_frame(std::span<const std::byte> bytes, bool with_parts) {
   }
   if (!with_parts) return {};
   for (const FramePart& part : header.parts) {
-    if (part.offset > bytes.size() || part.size > bytes.size() - part.offset ||
-        crc32(bytes.subspan(part.offset, part.size)) != part.crc32) {
-      return fail(ErrorCode::invalid_argument, "a frame with a damaged part");
-    }
+    const auto sound = checked_part(bytes, header, part.kind);
+    if (!sound) return fail(ErrorCode::invalid_argument, sound.error().message);
   }
   return {};
 }

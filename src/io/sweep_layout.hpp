@@ -19,7 +19,6 @@ inline constexpr std::size_t kSweepTrailerSize = 16;
 /// Bytes of a record before its frame, beside the name.
 inline constexpr std::size_t kRecordHeadSize = 9;
 inline constexpr std::size_t kMaxNameSize = 255;
-inline constexpr std::uint64_t kMaxFrameSize = std::uint64_t{256} << 20;
 inline constexpr std::uint64_t kMaxFrames = std::uint64_t{1} << 24;
 inline constexpr std::uint64_t kMaxIndexSize = std::uint64_t{1} << 30;
 

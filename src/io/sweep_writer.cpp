@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "codec/frame_layout.hpp"
 #include "io/file.hpp"
 #include "io/sweep_layout.hpp"
 #include "sweepcast/sweep_file.hpp"
@@ -163,7 +164,7 @@ Status SweepWriter::append(std::span<const std::byte> frame, std::string_view na
   if (name.size() > kMaxNameSize) {
     return refuse(state.path, "a frame's name is longer than 255 bytes; shorten it");
   }
-  if (frame.size() > kMaxFrameSize || state.entries.size() >= kMaxFrames ||
+  if (frame.size() > kLargestFrame || state.entries.size() >= kMaxFrames ||
       state.index_size + kMaxNameSize > kMaxIndexSize) {
     return refuse(state.path,
                   "a .sweep file cannot take this frame (256 MiB a frame, 2^24 frames); "
