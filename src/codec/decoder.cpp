@@ -10,7 +10,7 @@ struct Decoder::State {
   rcpcc::Decoder rcpcc;
 
   Status decode(std::span<const std::byte> frame, PointCloud& cloud) {
-    if (const Status status = parse_frame_header(frame, header); !status) return status;
+    if (Status status = parse_frame_header(frame, header); !status) return status;
     if (header.frame_size > frame.size()) {
       return fail(ErrorCode::truncated, "the frame is cut short");
     }

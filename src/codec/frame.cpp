@@ -55,7 +55,7 @@ std::string_view part_name(CodecId codec, std::uint8_t kind) noexcept {
 Status parse_frame_header(std::span<const std::byte> bytes, FrameHeader& header) {
   header.parts.clear();
   ByteReader in(bytes);
-  if (const Status status = read_head(in, header); !status) return status;
+  if (Status status = read_head(in, header); !status) return status;
   const std::size_t checked = in.position();
   const auto checksum = in.get<std::uint32_t>();
   if (!in.ok()) {

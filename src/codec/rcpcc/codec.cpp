@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <string>
 
 #include "codec/rcpcc/occupancy.hpp"
@@ -149,18 +148,18 @@ Status Decoder::decode(std::span<const std::byte> frame, const FrameHeader& head
   const auto damaged = [](std::string_view what) {
     return fail(ErrorCode::corrupt, "the frame's " + std::string(what) + " cannot be right");
   };
-  if (const Status status = unpack(frame, header, Part::grid); !status) return status;
+  if (Status status = unpack(frame, header, Part::grid); !status) return status;
   if (!read_grid()) return damaged("grid");
 
-  if (const Status status = unpack(frame, header, Part::occupancy); !status) return status;
+  if (Status status = unpack(frame, header, Part::occupancy); !status) return status;
   ByteReader occupancy(raw_);
   if (!read_occupancy(occupancy, image_.range_mm)) return damaged("occupancy");
-  if (std::accumulate(image_.range_mm.begin(), image_.range_mm.end(), 0U) !=
-      header.counts.points_coded) {
+  if (std::count(image_.range_mm.begin(), image_.range_mm.end(), 1) !=
+      static_cast<std::ptrdiff_t>(header.counts.points_coded)) {
     return damaged("number of points");
   }
 
-  if (const Status status = unpack(frame, header, Part::surfaces); !status) return status;
+  if (Status status = unpack(frame, header, Part::surfaces); !status) return status;
   ByteReader surfaces(raw_);
   list_occupied_blocks(image_, surface_options_.block_size, blocks_);
   if (!read_surfaces(surfaces, blocks_, surfaces_) ||
@@ -168,7 +167,7 @@ Status Decoder::decode(std::span<const std::byte> frame, const FrameHeader& head
     return damaged("list of surfaces");
   }
 
-  if (const Status status = unpack(frame, header, Part::unfit); !status) return status;
+  if (Status status = unpack(frame, header, Part::unfit); !status) return status;
   ByteReader unfit(raw_);
   if (!unfit_coder_.read(unfit, fitted_, unfit_options_, image_)) return damaged("unfit image");
 
