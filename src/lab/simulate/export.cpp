@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -24,12 +25,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Fixed notation with the locale out of it.
+// Fixed notation with the locale out of it, and no minus before a zero.
 void append(std::string& text, double value, int digits) {
   std::array<char, 64> buffer{};
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(),
-                                 value == 0.0 ? 0.0 : value, std::chars_format::fixed, digits);
-  text.append(buffer.data(), end.ptr);
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
+                                 std::chars_format::fixed, digits);
+  const std::string_view number(buffer.data(), static_cast<std::size_t>(end.ptr - buffer.data()));
+  const bool zero = number.find_first_not_of("-0.") == std::string_view::npos;
+  text += zero && number.front() == '-' ? number.substr(1) : number;
 }
 
 std::string pose_line(const Pose& pose) {

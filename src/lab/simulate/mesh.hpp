@@ -16,7 +16,7 @@ enum class Material : std::uint8_t { matt, foliage, paint, glass, retroreflector
 /// What a triangle is made of, and whose it is.
 struct Surface {
   Material material = Material::matt;
-  std::uint8_t albedo = 30;  ///< per cent of the light sent back
+  std::uint8_t albedo = 30;  ///< per cent of the light sent back; of glass, of pulses returned
   std::uint16_t object = 0;  ///< number of a boxed object; 0 is none
 };
 

@@ -16,8 +16,8 @@ double brightness(const Impact& impact, Random& random) {
       return albedo * random.uniform(0.45, 1.0);
     case Material::paint:  // clear coat: a mirror that also scatters a little
       return albedo * (0.25 + 0.75 * cosine) + (cosine > 0.985 ? 0.4 : 0.0);
-    case Material::glass:  // lets most light through; dirt and frames do the rest
-      return random.chance(0.3) ? 0.10 + 0.2 * cosine * cosine : 0.005;
+    case Material::glass:  // mostly a window on darkness; the albedo says how often it is not
+      return random.chance(albedo) ? 0.12 + 0.2 * cosine * cosine : 0.002;
     case Material::retroreflector:
       return cosine > 0.25 ? 2.5 * albedo : 0.3 * albedo;
     case Material::matt:
@@ -65,9 +65,9 @@ std::optional<Impact> meet(const Solid& solid, Vec3 origin, Vec3 direction, doub
   return Impact{range, std::min(cosine, 1.0), solid.mesh.surfaces[*hit]};
 }
 
-std::optional<Echo> echo(const Sensor& sensor, const Impact& impact, double noise, bool dropouts,
-                         Random random) {
-  constexpr double kStray = 0.004;     // pulses lost for no reason that we model
+std::optional<Echo> echo(const Sensor& sensor, double gain, const Impact& impact, double noise,
+                         bool dropouts, Random random) {
+  constexpr double kStray = 0.003;     // pulses lost for no reason that we model
   constexpr double kReference = 0.25;  // the albedo that `reach_m` is stated for
   const double bright = brightness(impact, random);
   if (dropouts) {
@@ -83,7 +83,7 @@ std::optional<Echo> echo(const Sensor& sensor, const Impact& impact, double nois
   if (range < sensor.min_range_m || range > sensor.max_range_m) return std::nullopt;
   const double speckle = 1.0 + 0.06 * random.normal();
   const double intensity =
-      std::clamp(sensor.intensity_scale * bright * speckle, 0.0, sensor.intensity_max);
+      std::clamp(gain * sensor.intensity_scale * bright * speckle, 0.0, sensor.intensity_max);
   return Echo{range, round_to(intensity, sensor.intensity_step)};
 }
 

@@ -42,9 +42,10 @@ struct Echo {
 };
 
 /// The sensor's answer to an impact: none where too little light comes back, by the material, the
-/// incidence and the range. `random` belongs to this pulse alone.
-[[nodiscard]] std::optional<Echo> echo(const Sensor& sensor, const Impact& impact, double noise,
-                                       bool dropouts, Random random);
+/// incidence and the range. `gain` is the beam's, on intensity. `random` belongs to this pulse
+/// alone.
+[[nodiscard]] std::optional<Echo> echo(const Sensor& sensor, double gain, const Impact& impact,
+                                       double noise, bool dropouts, Random random);
 
 /// Whether a beam ends on the roof of the sensor's own car. Sensor frame.
 [[nodiscard]] bool meets_own_roof(Vec3 origin, Vec3 direction);

@@ -43,12 +43,14 @@ Sensor hdl64() {
     beam.lateral_m = k % 2 == 0 ? -0.026 : 0.026;
     beam.lag_ticks = (upper ? kUpperLag : kLowerLag)[static_cast<std::size_t>(row % 12)];
     beam.azimuth_offset_deg = assembly.uniform(-0.045, 0.045);
+    beam.gain = 1.0 + 0.12 * assembly.normal();
     sensor.beams.push_back(beam);
   }
   sensor.firing_order = in_order(sensor.beams.size());
   sensor.ticks_per_turn = 4000;
   sensor.period_num = 31'250'000;  // 2166.4 a turn: steps of 2 2 2 2 2 1 ticks, at times a sixth 2
   sensor.period_den = 677;
+  sensor.intensity_scale = 1.2;
   sensor.range_sigma_m = 0.015;
   sensor.range_step_m = 0.002;
   sensor.reach_m = 90.0;

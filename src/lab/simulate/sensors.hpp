@@ -20,6 +20,8 @@ struct Beam {
   double azimuth_offset_deg = 0.0;
   double lateral_m = 0.0;
   int lag_ticks = 0;
+  double gain = 1.0;  ///< on intensity: lasers and their detectors are not alike
+
   std::int64_t delay_ns = 0;  ///< from the firing's time to this laser's pulse
 };
 

@@ -203,13 +203,13 @@ std::optional<Point> Drive::Parts::pulse(std::int64_t firing, int ring, double p
   if (!impact) return std::nullopt;
   const Random random(options.seed, 5, static_cast<std::uint64_t>(firing),
                       static_cast<std::uint64_t>(ring));
-  const auto back = echo(sensor, *impact, options.noise, options.dropouts, random);
+  const Beam& beam = sensor.beams[static_cast<std::size_t>(ring)];
+  const auto back = echo(sensor, beam.gain, *impact, options.noise, options.dropouts, random);
   if (!back) return std::nullopt;
   Vec3 p = ray.origin + ray.direction * back->range;
   if (sensor.millimetres) p = {rounded_mm(p.x), rounded_mm(p.y), rounded_mm(p.z)};
-  const std::int64_t since = sensor.time_ns(firing) +
-                             sensor.beams[static_cast<std::size_t>(ring)].delay_ns -
-                             sensor.time_ns(sensor.first_firing(index));
+  const std::int64_t since =
+      sensor.time_ns(firing) + beam.delay_ns - sensor.time_ns(sensor.first_firing(index));
   return Point{p, back->intensity, ring, since, impact->surface.object};
 }
 
