@@ -47,14 +47,15 @@ struct Distortion {
 struct DistortionFigure {
   std::string_view name;
   double Distortion::*value;
+  bool is_count = false;  ///< points; whole in a single comparison
 };
 
 /// Every figure but the F-score, in the order of reports.
 inline constexpr std::array<DistortionFigure, 14> kDistortionFigures{{
-    {"points_original", &Distortion::points_original},
-    {"points_decoded", &Distortion::points_decoded},
-    {"left_out_original", &Distortion::left_out_original},
-    {"left_out_decoded", &Distortion::left_out_decoded},
+    {"points_original", &Distortion::points_original, true},
+    {"points_decoded", &Distortion::points_decoded, true},
+    {"left_out_original", &Distortion::left_out_original, true},
+    {"left_out_decoded", &Distortion::left_out_decoded, true},
     {"mean_o2d", &Distortion::mean_o2d},
     {"rms_o2d", &Distortion::rms_o2d},
     {"max_o2d", &Distortion::max_o2d},

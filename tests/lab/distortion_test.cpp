@@ -85,7 +85,7 @@ struct OneWay {
 TEST(Distortion, AgreesWithBruteForceOnRandomClouds) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     const PointCloud original = random_cloud(900, seed, 0.5F);
-    const PointCloud decoded = random_cloud(400 * seed, seed + 100, 0.5F);
+    const PointCloud decoded = random_cloud(std::size_t{400} * seed, seed + 100, 0.5F);
     const Distortion d = compare(original, decoded);
     const OneWay o2d(original, decoded);
     const OneWay d2o(decoded, original);

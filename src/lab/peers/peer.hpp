@@ -1,0 +1,43 @@
+// A codec as the benchmark sees it. Adding one is a file beside this that implements `Peer` and a
+// function that makes it.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sweepcast/cloud.hpp"
+#include "sweepcast/status.hpp"
+
+namespace sweepcast::lab {
+
+/// A codec at one setting. What `encode` and `decode` do is what the benchmark times, so both do
+/// what a user of the codec would have to do, no less and no more.
+class Peer {
+ public:
+  Peer(std::string codec, std::string setting)
+      : codec_(std::move(codec)), setting_(std::move(setting)) {}
+  virtual ~Peer() = default;
+  Peer(const Peer&) = delete;
+  Peer& operator=(const Peer&) = delete;
+
+  [[nodiscard]] const std::string& codec() const { return codec_; }      ///< as in "rcpcc"
+  [[nodiscard]] const std::string& setting() const { return setting_; }  ///< as in "L0"
+
+  /// Encodes the coordinates of a sweep. The bytes stay valid until the next call.
+  [[nodiscard]] virtual Result<std::span<const std::byte>> encode(const PointCloud& cloud) = 0;
+
+  /// Decodes what `encode` gave into `cloud`, whose memory is reused.
+  [[nodiscard]] virtual Status decode(std::span<const std::byte> bytes, PointCloud& cloud) = 0;
+
+ private:
+  std::string codec_;
+  std::string setting_;
+};
+
+using Peers = std::vector<std::unique_ptr<Peer>>;
+
+}  // namespace sweepcast::lab

@@ -1,0 +1,36 @@
+#include "lab/peers/sweepcast_codec.hpp"
+
+#include "sweepcast/decoder.hpp"
+
+namespace sweepcast::lab {
+namespace {
+
+class SweepcastPeer : public Peer {
+ public:
+  SweepcastPeer(std::string codec, std::string setting, Encoder encoder)
+      : Peer(std::move(codec), std::move(setting)), encoder_(std::move(encoder)) {}
+
+  Result<std::span<const std::byte>> encode(const PointCloud& cloud) override {
+    return encoder_.encode(cloud, SweepInfo{});
+  }
+
+  Status decode(std::span<const std::byte> bytes, PointCloud& cloud) override {
+    return decoder_.decode(bytes, cloud);
+  }
+
+ private:
+  Encoder encoder_;
+  Decoder decoder_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Peer>> make_sweepcast_peer(const EncoderOptions& options,
+                                                  std::string setting) {
+  auto encoder = Encoder::create(options);
+  if (!encoder) return tl::unexpected(std::move(encoder.error()));
+  return std::make_unique<SweepcastPeer>(std::string(name(options.codec)), std::move(setting),
+                                         std::move(*encoder));
+}
+
+}  // namespace sweepcast::lab

@@ -1,0 +1,17 @@
+// Our own codecs, measured like any other.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "lab/peers/peer.hpp"
+#include "sweepcast/encoder.hpp"
+
+namespace sweepcast::lab {
+
+/// Makes a peer of an `Encoder` with these options and a `Decoder`. `setting` is its label.
+/// Errors: invalid_argument, see `Encoder::create`.
+[[nodiscard]] Result<std::unique_ptr<Peer>> make_sweepcast_peer(const EncoderOptions& options,
+                                                                std::string setting);
+
+}  // namespace sweepcast::lab
