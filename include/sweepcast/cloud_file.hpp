@@ -29,19 +29,22 @@ enum class CloudEncoding : std::uint8_t { ascii, binary, binary_compressed };
 
 /// Reads one cloud; the extension decides the format. Reuses the memory of `cloud`.
 ///
-/// Fields taken, by name: x y z; intensity (also i, reflectivity, scalar_Intensity); ring (also
-/// channel, laser_id); time (also t, timestamp, time_stamp, time_offset): floating point counts as
-/// seconds, integers as nanoseconds. Times are made relative to the smallest one, so that the first
-/// firing is 0. Other fields are skipped. In a .bin file the fourth column is intensity.
+/// Fields taken, by name (upper or lower case): x y z; intensity (also i, reflectivity,
+/// scalar_Intensity); ring (also channel, laser_id); time (also t, timestamp, time_stamp,
+/// time_offset): floating point counts as seconds, integers as nanoseconds. Times are made relative
+/// to the smallest one, so that the first firing is 0. Other fields are skipped. In a .bin file the
+/// fourth column is intensity. Coordinates that are NaN or infinite stay so.
 ///
 /// Errors: not_found, io, corrupt (with the line or byte at fault), truncated, unsupported
-/// (extension, no x y z), limit (over 2^24 points). Messages start with the file's path.
+/// (extension, content of another kind, no x y z), limit (over 2^24 points or 1 GiB). Messages
+/// start with the file's path; the cloud is then empty.
 [[nodiscard]] Status read_cloud(const std::filesystem::path& path, PointCloud& cloud);
 
 /// Writes one cloud under a temporary name in the same folder and renames it, so that a file is
-/// there whole or not at all. A .bin has intensity 0 where the cloud has none; PCD and PLY carry
-/// x y z and the columns that the cloud has, time as float64 seconds.
-/// Errors: io (unwritable folder, full disk), invalid_argument (encoding and format do not fit).
+/// there whole or not at all; a device or pipe is written directly. A .bin has intensity 0 where
+/// the cloud has none; PCD and PLY carry x y z and the columns that the cloud has, time as float64
+/// seconds. Errors: io (unwritable folder, full disk), invalid_argument (encoding and format do not
+/// fit, columns of different lengths, over 2^24 points).
 [[nodiscard]] Status write_cloud(const std::filesystem::path& path, const PointCloud& cloud,
                                  CloudFormat format,
                                  CloudEncoding encoding = CloudEncoding::binary);

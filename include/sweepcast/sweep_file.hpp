@@ -28,10 +28,13 @@ class SweepWriter {
   /// How the file comes into being.
   enum class Mode : std::uint8_t {
     convert,  ///< under a temporary name, renamed by `close`: whole or not at all
-    record,   ///< in place, each frame on disk when `append` returns; appends to an existing file
+    record,  ///< in place, each frame in the file when `append` returns; appends to an existing one
   };
 
-  /// Errors: io, and in mode record corrupt or unsupported where the existing file is not .sweep.
+  /// A path that is there and is no regular file (a device, a pipe) is written directly.
+  /// Errors: io, and in mode record corrupt or unsupported where the existing file is not .sweep,
+  /// or is damaged so that appending would destroy frames. A file that was cut is no error:
+  /// recording goes on behind its last whole frame.
   [[nodiscard]] static Result<SweepWriter> open(const std::filesystem::path& path, Mode mode);
 
   SweepWriter(SweepWriter&&) noexcept;
@@ -40,7 +43,10 @@ class SweepWriter {
   ~SweepWriter();
 
   /// Adds a frame; `name` is the base name of its source, at most 255 bytes, or empty.
-  /// Errors: io (such as a full disk), invalid_argument (not a frame, name too long).
+  /// In mode record a crash of the program loses nothing of it, a power loss at most what was added
+  /// since the last call that reached the disk: one a second does.
+  /// Errors: io (such as a full disk: mode record keeps all frames before and may go on, mode
+  /// convert leaves nothing behind), invalid_argument (not a frame, name too long, closed).
   [[nodiscard]] Status append(std::span<const std::byte> frame, std::string_view name);
 
   /// Writes the index, flushes to disk, and in mode convert renames. Errors: io.
@@ -60,7 +66,8 @@ class SweepReader {
  public:
   /// Opens by the index where there is a sound one, else by walking the frames: a file that was
   /// cut short opens with all its whole frames, and `was_cut` says so.
-  /// Errors: not_found, io, corrupt (not a .sweep file), unsupported (version).
+  /// Errors: not_found, io, corrupt (not a .sweep file, or its head is damaged), unsupported
+  /// (version).
   [[nodiscard]] static Result<SweepReader> open(const std::filesystem::path& path);
 
   SweepReader(SweepReader&&) noexcept;
