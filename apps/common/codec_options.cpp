@@ -77,14 +77,15 @@ Box box_of(const std::array<double, 6>& c, const std::string& option) {
 }
 
 void add_quality(CLI::App& app, RcpccOptions& rcpcc) {
-  auto* level = app.add_option_function<int>(
-                       "--level",
-                       [&rcpcc](int chosen) {
-                         rcpcc.params = kRcpccLevels.at(static_cast<std::size_t>(chosen));
-                       },
-                       "Level of the released code, 0 the finest")
-                    ->check(CLI::Range(0, static_cast<int>(kRcpccLevels.size()) - 1))
-                    ->type_name("0..5");
+  auto* level =
+      app.add_option_function<int>(
+             "--level",
+             [&rcpcc](int chosen) {
+               rcpcc.params = kRcpccLevels.at(static_cast<std::size_t>(chosen));
+             },
+             "Level of the released code, 0 the finest")
+          ->check(CLI::Range(0, static_cast<int>(kRcpccLevels.size()) - 1).description(""))
+          ->type_name("0..5");
   auto* params =
       add_numbers<4>(app, "--params", "AZIMUTH,ELEVATION,THRESHOLD,QSTEP",
                      "Steps in degrees, threshold and quantiser step in metres [0.5,0.5,0.3,0.2]",
@@ -106,7 +107,8 @@ void add_view(CLI::App& app, RcpccOptions& rcpcc) {
                    rcpcc.azimuth_min_deg = v[0];
                    rcpcc.azimuth_max_deg = v[1];
                  });
-  app.add_option("--max-range", rcpcc.max_range_m, "Farther points count as out of view [500]")
+  app.add_option("--max-range", rcpcc.max_range_m,
+                 fmt::format("Farther points count as out of view [{}]", rcpcc.max_range_m))
       ->type_name("METRES");
 }
 
@@ -117,12 +119,14 @@ void add_codec_options(CLI::App& app, EncoderOptions& options) {
   add_choice<CodecId>(app, "--codec", options.codec, {{"rcpcc", CodecId::rcpcc}},
                       "How sweeps are coded [rcpcc]");
   add_quality(app, rcpcc);
-  app.add_option("--block", rcpcc.block_size, "Side of a macroblock in cells [4]")
-      ->check(CLI::IsMember({4, 8, 16}))
+  app.add_option("--block", rcpcc.block_size,
+                 fmt::format("Side of a macroblock in cells [{}]", rcpcc.block_size))
+      ->check(CLI::IsMember({4, 8, 16}).description(""))
       ->type_name("4|8|16");
-  app.add_option("--region", rcpcc.region_size, "Side of an SA-DCT region in cells [16]")
-      ->check(CLI::IsMember({8, 16, 32}))
-      ->type_name("8|16|32");
+  app.add_option("--region", rcpcc.region_size,
+                 fmt::format("Side of an SA-DCT region in cells [{}]", rcpcc.region_size))
+      ->check(CLI::IsMember({4, 8, 16, 32}).description(""))
+      ->type_name("4|8|16|32");
   add_choice<SurfaceModel>(app, "--model", rcpcc.model,
                            {{"surface", SurfaceModel::surface}, {"plane", SurfaceModel::plane}},
                            "What a block is fitted with [surface]");
@@ -137,8 +141,8 @@ void add_codec_options(CLI::App& app, EncoderOptions& options) {
       {{"range", CollisionRule::nearest_range}, {"centre", CollisionRule::nearest_centre}},
       "Which point a cell keeps: the one nearest to the sensor, or to the "
       "cell's centre [range]");
-  app.add_option("--zstd", rcpcc.zstd_level, "Level of zstd [3]")
-      ->check(CLI::Range(1, 22))
+  app.add_option("--zstd", rcpcc.zstd_level, fmt::format("Level of zstd [{}]", rcpcc.zstd_level))
+      ->check(CLI::Range(1, 22).description(""))
       ->type_name("1..22");
   add_view(app, rcpcc);
 }

@@ -17,6 +17,12 @@ namespace sweepcast::app {
 
 namespace {
 
+/// One line on standard error; where that is closed, nobody wants to know.
+void say(std::string_view kind, std::string_view message) {
+  const std::string line = fmt::format("sweepcast: {}: {}\n", kind, message);
+  std::fwrite(line.data(), 1, line.size(), stderr);
+}
+
 /// Makes the standard streams safe to write files beside. A stream that the caller closed would
 /// lend its number to the next file opened, which then took our messages in; so the number is
 /// occupied, in the direction that cannot be used. A reader that went away, or a limit on file
@@ -44,12 +50,17 @@ int finish(int exit_status) {
   return 1;
 }
 
+/// The subcommand of this name; null where there is none.
+CLI::App* find_subcommand(CLI::App& app, const std::string& name) {
+  const auto found =
+      app.get_subcommands([&](const CLI::App* sub) { return sub->check_name(name); });
+  return found.empty() ? nullptr : found.front();
+}
+
 /// The program or subcommand that was called without any argument; null where there are some.
 CLI::App* called_bare(CLI::App& app, int argc, char** argv) {
   if (argc < 2) return &app;
-  const auto called = [argv](const CLI::App* sub) { return sub->check_name(argv[1]); };
-  const auto subs = argc == 2 ? app.get_subcommands(called) : std::vector<CLI::App*>{};
-  return subs.empty() ? nullptr : subs.front();
+  return argc == 2 ? find_subcommand(app, argv[1]) : nullptr;
 }
 
 /// Says what is wrong with the command line, and where to read how it should be.
@@ -62,6 +73,11 @@ int refuse(const CLI::App& app, const CLI::ParseError& error) {
 
 int run_command(CLI::App& app, const Command& command, int argc, char** argv) {
   try {
+    const std::string first = argv[1];
+    if (first.rfind('-', 0) != 0 && find_subcommand(app, first) == nullptr) {
+      throw CLI::ExtrasError(fmt::format("no command is named \"{}\"", first),
+                             CLI::ExitCodes::ExtrasError);
+    }
     app.parse(argc, argv);
     const Status status = command ? command() : Status{};
     if (status) return 0;
@@ -80,18 +96,19 @@ int run_command(CLI::App& app, const Command& command, int argc, char** argv) {
 int run(CLI::App& app, const Command& command, int argc, char** argv) {
   guard_standard_streams();
   if (const CLI::App* bare = called_bare(app, argc, argv)) {
-    fmt::print(stderr, "{}", bare->help(bare == &app ? "" : app.get_name()));
+    const std::string help = bare->help(bare == &app ? "" : app.get_name());
+    std::fwrite(help.data(), 1, help.size(), stderr);
     return 2;
   }
   return finish(run_command(app, command, argc, argv));
 }
 
 void print_error(std::string_view message) {
-  fmt::print(stderr, "sweepcast: error: {}\n", message);
+  say("error", message);
 }
 
 void print_note(std::string_view message) {
-  fmt::print(stderr, "sweepcast: note: {}\n", message);
+  say("note", message);
 }
 
 void print_json(const nlohmann::ordered_json& value) {

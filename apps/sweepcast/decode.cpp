@@ -120,7 +120,7 @@ Status decode(const DecodeOptions& options) {
       continue;
     }
     decoded->file = options.folder / (decoded->name + "." + options.format);
-    const Status written = write_cloud(decoded->file, work.cloud, format, encoding_of(options));
+    Status written = write_cloud(decoded->file, work.cloud, format, encoding_of(options));
     if (!written) return written;
     frames.push_back(std::move(*decoded));
     progress.step(frames.back().name);
@@ -150,7 +150,7 @@ void add_decode(CLI::App& app, Command& command) {
       ->type_name("DIR")
       ->required();
   sub->add_option("--format", options->format, "Format of the clouds [bin]")
-      ->check(CLI::IsMember({"bin", "pcd", "ply"}))
+      ->check(CLI::IsMember({"bin", "pcd", "ply"}).description(""))
       ->type_name("bin|pcd|ply");
   auto* ascii = sub->add_flag("--ascii", options->ascii, "Write numbers as text (pcd, ply)");
   sub->add_flag("--compressed", options->compressed, "Write binary_compressed (pcd)")

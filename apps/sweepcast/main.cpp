@@ -1,12 +1,17 @@
 #include <fmt/core.h>
 #include <zstd.h>
 
+#include <cstdio>
+#include <exception>
+
 #include "common/build_info.hpp"
 #include "sweepcast/commands.hpp"
 
-int main(int argc, char** argv) {
-  using namespace sweepcast::app;
-  if (argc > 1 && is_lab_command(argv[1])) return run_lab(argv);
+namespace {
+
+using namespace sweepcast::app;
+
+int run_tool(int argc, char** argv) {
   CLI::App app{"Compresses LiDAR sweeps, gives them back, and measures what was lost.",
                "sweepcast"};
   app.set_version_flag("--version", [] {
@@ -25,4 +30,13 @@ int main(int argc, char** argv) {
   add_compare(app, command);
   add_lab(app);
   return run(app, command, argc, argv);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  return argc > 1 && is_lab_command(argv[1]) ? run_lab(argv) : run_tool(argc, argv);
+} catch (const std::exception& error) {  // memory ran out before there was a command to blame
+  std::fputs(error.what(), stderr);
+  return 1;
 }

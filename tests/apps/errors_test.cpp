@@ -1,0 +1,198 @@
+// What the tool does when something is wrong: it says what and where, and nothing is lost.
+#include <gtest/gtest.h>
+
+#include "apps/tool_fixture.hpp"
+#include "sweepcast/encoder.hpp"
+#include "sweepcast/sweep_file.hpp"
+
+namespace sweepcast::test {
+namespace {
+
+/// Where frame `i` of a .sweep file begins, and its bytes.
+std::pair<std::size_t, std::size_t> place_of(const nlohmann::json& info, std::size_t i) {
+  const auto& frame = info["frames"][i];
+  return {frame["offset"].get<std::size_t>(), frame["bytes"].get<std::size_t>()};
+}
+
+TEST_F(ToolTest, BareCommandsPrintTheirHelp) {
+  for (const std::string command : {"", "encode", "decode", "info", "verify", "compare"}) {
+    const Outcome outcome = run(command);
+    expect_failure(outcome, 2, {"Usage: sweepcast " + command, "Example: sweepcast"});
+    EXPECT_EQ(outcome.out, "");
+  }
+}
+
+TEST_F(ToolTest, HelpHasAnExample) {
+  for (const std::string command : {"encode", "decode", "info", "verify", "compare"}) {
+    const Outcome outcome = run(command + " --help");
+    EXPECT_EQ(outcome.exit_status, 0);
+    EXPECT_NE(outcome.out.find("Example: sweepcast " + command), std::string::npos) << outcome.out;
+  }
+  const Outcome all = run("--help");
+  for (const char* command : {"encode", "decode", "simulate", "bench", "ablate"}) {
+    EXPECT_NE(all.out.find("\n  " + std::string(command) + " "), std::string::npos) << command;
+  }
+}
+
+TEST_F(ToolTest, VersionListsTheParts) {
+  const Outcome outcome = run("--version");
+  EXPECT_EQ(outcome.exit_status, 0);
+  EXPECT_EQ(outcome.out.rfind("sweepcast " SWEEPCAST_VERSION "\n", 0), 0U) << outcome.out;
+  for (const char* word : {"embree", "draco", "zstd: 1."}) {
+    EXPECT_NE(outcome.out.find(word), std::string::npos) << outcome.out;
+  }
+}
+
+TEST_F(ToolTest, WrongCommandLinesAreRefused) {
+  write_bin("a.bin", make_room(0.0F));
+  for (const std::string options :
+       {"--bogus", "-o", "--level 6", "--level x", "--params 1,1,1", "--params 1,1,1,1,1",
+        "--params 1,,1,1", "--params nan,1,1,1", "--params 0,1,1,1", "--params 99,1,1,1",
+        "--level 1 --params 1,1,1,1", "--block 5", "--region 7", "--zstd 23", "--codec mp3",
+        "--crop-box 1,1,1,0,0,0", "--crop-range 5", "--fov-elevation 10,-10", "--rate 0"}) {
+    expect_failure(run("encode a.bin -o x.sweep " + options), 2, {"see `sweepcast encode --help`"});
+  }
+  expect_failure(run("decode x.sweep -o back --format obj"), 2, {"obj"});
+  expect_failure(run("decode x.sweep -o back --format bin --ascii"), 2, {"--ascii"});
+  expect_failure(run("frobnicate"), 2, {"frobnicate", "sweepcast --help"});
+  EXPECT_EQ(list("."), std::vector<std::string>{"a.bin"});
+}
+
+TEST_F(ToolTest, InputsThatAreNotThereOrNotClouds) {
+  std::filesystem::create_directory(path("empty"));
+  write("nothing.bin", "");
+  write_bin("mixed/a.bin", make_room(0.0F));
+  write("mixed/b.ply", "ply\n");
+  write("text.txt", "hello");
+  expect_failure(run("encode missing.bin -o x.sweep"), 1, {"missing.bin", ";"});
+  expect_failure(run("encode empty -o x.sweep"), 1, {"empty", ";"});
+  expect_failure(run("encode nothing.bin -o x.sweep"), 1, {"nothing.bin", ";"});
+  expect_failure(run("encode mixed -o x.sweep"), 1, {"mixed", ";"});
+  expect_failure(run("encode text.txt -o x.sweep"), 1, {"text.txt", ";"});
+  EXPECT_EQ(list("."), (std::vector<std::string>{"empty", "mixed", "nothing.bin", "text.txt"}));
+}
+
+TEST_F(ToolTest, OutputsThatCannotBeWritten) {
+  write_bin("a.bin", make_room(0.0F));
+  expect_failure(run("encode a.bin -o a.bin/x.sweep"), 1, {"a.bin/x.sweep"});
+  expect_failure(run("encode a.bin -o no/folder/x.sweep"), 1, {"no/folder/x.sweep"});
+  expect_failure(run("encode a.bin -o a.bin"), 1, {"a.bin", ".sweep"});
+  expect_failure(run("encode a.bin -o /dev/full"), 1, {"/dev/full", "space"});
+  expect_failure(run("encode a.bin --append -o /dev/full"), 1, {"/dev/full", "space"});
+  EXPECT_EQ(read_bin("a.bin").size(), make_room(0.0F).size());
+  ASSERT_EQ(run("encode a.bin -o x.sweep").exit_status, 0);
+  expect_failure(run("decode x.sweep -o a.bin"), 1, {"a.bin"});
+  expect_failure(run("decode x.sweep -o a.bin/below"), 1, {"a.bin/below"});
+}
+
+TEST_F(ToolTest, FullDiskKeepsWhatIsThere) {
+  make_recording(6);  // of about 1 kB a frame; the limit is 512 bytes
+  const std::string before = read("room.sweep");
+  ASSERT_GT(before.size(), 512U);
+  expect_failure(shell("ulimit -f 1; \"$SWEEPCAST\" encode sweeps -o room.sweep --level 0"), 1,
+                 {"room.sweep"});
+  EXPECT_EQ(read("room.sweep"), before);
+  EXPECT_EQ(list("."), (std::vector<std::string>{"room.sweep", "sweeps"}));
+  expect_failure(shell("ulimit -f 1; \"$SWEEPCAST\" decode room.sweep -o back"), 1,
+                 {"back/000000"});
+  EXPECT_TRUE(list("back").empty());
+}
+
+TEST_F(ToolTest, StandardOutputThatTakesNothing) {
+  make_recording(1);
+  expect_failure(run("info room.sweep >/dev/full"), 1, {"standard output"});
+  expect_failure(run("--help >/dev/full"), 1, {"standard output"});
+  // The file must not take standard output's place.
+  expect_failure(run("encode sweeps -o other.sweep >&-"), 1, {"standard output"});
+  EXPECT_EQ(read("other.sweep"), read("room.sweep"));
+}
+
+TEST_F(ToolTest, FailedEncodeKeepsTheOldFile) {
+  make_recording(2);
+  const std::string before = read("room.sweep");
+  write("sweeps/000001.bin", "seventeen bytes..");
+  expect_failure(run("encode sweeps -o room.sweep"), 1, {"sweeps/000001.bin", ";"});
+  EXPECT_EQ(read("room.sweep"), before);
+  EXPECT_EQ(list("."), (std::vector<std::string>{"room.sweep", "sweeps"}));
+}
+
+TEST_F(ToolTest, FilesThatAreNotSweepFiles) {
+  write_bin("a.bin", make_room(0.0F));
+  write("nothing.sweep", "");
+  for (const std::string file : {"a.bin", "nothing.sweep", "missing.sweep"}) {
+    expect_failure(run("decode " + file + " -o back"), 1, {file, ";"});
+    expect_failure(run("info " + file), 1, {file, ";"});
+    expect_failure(run("verify " + file + " --original ."), 1, {file, ";"});
+  }
+  EXPECT_FALSE(exists("back"));
+}
+
+TEST_F(ToolTest, TruncatedFileGivesItsWholeFrames) {
+  make_recording(3);
+  const auto [offset, bytes] = place_of(run("info room.sweep --json").json(), 2);
+  const std::string whole = read("room.sweep");
+
+  write("cut.sweep", whole.substr(0, offset + bytes / 2));
+  expect_failure(run("decode cut.sweep -o back"), 1, {"cut.sweep", "2 frames"});
+  EXPECT_EQ(list("back"), (std::vector<std::string>{"000000.bin", "000001.bin"}));
+  EXPECT_EQ(run("info cut.sweep --json").json()["index_rebuilt"], true);
+
+  // A recording that ends behind a whole frame has lost nothing but its index.
+  write("open.sweep", whole.substr(0, offset + bytes));
+  EXPECT_EQ(run("decode open.sweep -o all").exit_status, 0);
+  EXPECT_EQ(list("all").size(), 3U);
+}
+
+TEST_F(ToolTest, DamagedFrameIsNamedAndTheOthersDecode) {
+  make_recording(3);
+  const auto [offset, bytes] = place_of(run("info room.sweep --json").json(), 1);
+  const std::string whole = read("room.sweep");
+  ASSERT_EQ(run("decode room.sweep -o whole").exit_status, 0);
+  for (const std::size_t at : {std::size_t{0}, std::size_t{9}, bytes / 2, bytes - 1}) {
+    std::string damaged = whole;
+    damaged[offset + at] = static_cast<char>(damaged[offset + at] ^ 0x10);
+    write("bad.sweep", damaged);
+    const Outcome outcome = run("decode bad.sweep -o back --json");
+    expect_failure(outcome, 1, {"bad.sweep", "frame 1 (000001)", "1 of 3 frames"});
+    EXPECT_EQ(outcome.json()["frames"].size(), 2U);
+    EXPECT_EQ(outcome.json()["errors"].size(), 1U);
+    EXPECT_EQ(list("back"), (std::vector<std::string>{"000000.bin", "000002.bin"}));
+    for (const std::string file : {"000000.bin", "000002.bin"}) {
+      EXPECT_EQ(read("back/" + file), read("whole/" + file));
+    }
+    expect_failure(run("verify bad.sweep --original sweeps"), 1, {"frame 1 (000001)"});
+  }
+}
+
+TEST_F(ToolTest, NamesCannotLeadOutOfTheFolder) {
+  auto encoder = Encoder::create({});
+  ASSERT_TRUE(encoder);
+  const std::array<float, 3> x{5, 6, 7}, y{1, 2, 3}, z{0, 0, 0};
+  const auto frame = encoder->encode(CloudView::columns(x, y, z), {});
+  ASSERT_TRUE(frame);
+  auto writer = SweepWriter::open(path("evil.sweep"), SweepWriter::Mode::convert);
+  ASSERT_TRUE(writer);
+  for (const std::string name :
+       {"../escaped", "..", "/tmp/escaped", "bell\a", "sub/file", "good"}) {
+    ASSERT_TRUE(writer->append(*frame, name)) << name;
+  }
+  ASSERT_TRUE(writer->close());
+  const Outcome outcome = run("decode evil.sweep -o back");
+  expect_failure(outcome, 1, {"evil.sweep", "frame 0", "5 of 6 frames"});
+  EXPECT_EQ(outcome.err.find('\a'), std::string::npos);
+  EXPECT_EQ(list("back"), std::vector<std::string>{"good.bin"});
+  EXPECT_EQ(list("."), (std::vector<std::string>{"back", "evil.sweep"}));
+}
+
+TEST_F(ToolTest, LabCommandsArePassedThroughUntouched) {
+  const std::string copy = "cp \"$SWEEPCAST\" here; PATH=/nowhere ./here ";
+  expect_failure(shell(copy + "bench --help"), 1, {"bench", "sweepcast-lab", "install"});
+  write("sweepcast-lab", "#!/bin/sh\nfor word; do echo \"[$word]\"; done; exit 7\n");
+  std::filesystem::permissions(path("sweepcast-lab"), std::filesystem::perms::owner_all);
+  const Outcome outcome = shell(copy + "bench --help 'two words' -- --version");
+  EXPECT_EQ(outcome.exit_status, 7);
+  EXPECT_EQ(outcome.out, "[bench]\n[--help]\n[two words]\n[--]\n[--version]\n");
+}
+
+}  // namespace
+}  // namespace sweepcast::test
