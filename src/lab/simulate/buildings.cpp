@@ -85,7 +85,7 @@ void add_balcony(MeshBuilder& builder, double x0, double x1, double z) {
 Bay plan_bay(const Style& style, int storey, bool door, double x0, double x1, double z0,
              Random& random) {
   const double middle = 0.5 * (x0 + x1);
-  Bay bay{x0, x1, z0, z0 + kStorey, 0, 0, 0, 0, style.recess, {Material::glass, 60, 0}};
+  Bay bay{x0, x1, z0, z0 + kStorey, 0, 0, 0, 0, style.recess, {Material::glass, 85, 0}};
   double half = std::min(0.5 * style.window_width, 0.5 * (x1 - x0) - 0.2);
   bay.c = z0 + style.sill;
   bay.d = bay.c + style.window_height;

@@ -17,7 +17,7 @@ double brightness(const Impact& impact, Random& random) {
     case Material::paint:  // clear coat: a mirror that also scatters a little
       return albedo * (0.25 + 0.75 * cosine) + (cosine > 0.985 ? 0.4 : 0.0);
     case Material::glass:  // mostly a window on darkness; the albedo says how often it is not
-      return random.chance(albedo) ? 0.12 + 0.2 * cosine * cosine : 0.002;
+      return random.chance(albedo) ? 0.12 + 0.2 * cosine * cosine : 0.0;
     case Material::retroreflector:
       return cosine > 0.25 ? 2.5 * albedo : 0.3 * albedo;
     case Material::matt:

@@ -25,6 +25,12 @@ double corner_heading(double run) {
   return kPi / 2.0 - rest * rest / (2.0 * kRamp * kTurnRadius);
 }
 
+// Metres to the middle of the nearest of the streets that cross this axis, at most to its kerb.
+double to_crown(double value) {
+  const double pitches = value / kPitch;
+  return std::min(std::abs(pitches - std::floor(pitches + 0.5)) * kPitch, kCarriageway);
+}
+
 constexpr double kCornerRun = kArc + 2.0 * kRamp;
 const int kCornerSteps = static_cast<int>(kCornerRun / kStep);
 
@@ -47,7 +53,8 @@ Terrain::Terrain(Random random) : phase_{} {
 
 double Terrain::height(double x, double y) const {
   constexpr double kTurn = 2.0 * kPi;
-  return 1.3 * sin_cos(kTurn * x / 230.0 + phase_[0]).sin +
+  const double camber = -0.02 * (to_crown(x) + to_crown(y));
+  return camber + 1.3 * sin_cos(kTurn * x / 230.0 + phase_[0]).sin +
          1.0 * sin_cos(kTurn * y / 190.0 + phase_[1]).sin +
          0.3 * sin_cos(kTurn * (x + y) / 110.0 + phase_[2]).sin;
 }

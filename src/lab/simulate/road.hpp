@@ -18,7 +18,8 @@ inline constexpr double kCornerRadius = 10.0;                      ///< of the k
 inline constexpr int kFirstBlock = -2;  ///< blocks run from here to kLastBlock, both ways
 inline constexpr int kLastBlock = 3;
 
-/// Height of the road surface: gentle hills, slopes up to about 6 %.
+/// Height of the road surface: gentle hills, slopes up to about 6 %, and a camber of 2 % from the
+/// middle of a street to its kerbs.
 class Terrain {
  public:
   explicit Terrain(Random random);

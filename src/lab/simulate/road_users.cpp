@@ -63,7 +63,7 @@ Extent add_car(MeshBuilder builder, Random& random) {
   const double slope = van ? 0.35 : 0.75;
   const auto window_high =
       bevelled(cabin_rear + 0.25, cabin_front - slope, width - 0.22, extent.height - 0.08);
-  builder.surface = {Material::glass, 7, object};
+  if (!van) builder.surface = {Material::glass, 7, object};
   builder.band(window_low, window_high);
   builder.surface = paint;
   const auto roof =
