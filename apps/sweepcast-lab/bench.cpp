@@ -246,24 +246,21 @@ void add_bench(CLI::App& app, Command& command) {
       ->required();
   sub->add_option("--codec", options->codecs, "Our codecs to measure [rcpcc]")
       ->delimiter(',')
-      ->check(CLI::IsMember({"rcpcc"}))
-      ->type_name("rcpcc");
+      ->check(CLI::IsMember({"rcpcc"}));
   sub->add_option("--levels", options->levels,
                   fmt::format("Levels of rcpcc [all, and --params {}]", kPaperSetting))
       ->delimiter(',')
-      ->check(CLI::IsMember({"0", "1", "2", "3", "4", "5", "all"}))
-      ->type_name("0,1,...|all");
+      ->check(CLI::IsMember({"0", "1", "2", "3", "4", "5", "all"}));
   sub->add_option("--params", options->params,
                   "A setting of rcpcc: steps in degrees, threshold and quantiser step in metres; "
                   "may be repeated")
       ->type_name("AZIMUTH,ELEVATION,THRESHOLD,QSTEP");
-  sub->add_option("--zstd", options->rcpcc.zstd_level, "Level of zstd for all settings [3]")
-      ->check(CLI::Range(1, 22))
-      ->type_name("1..22");
+  sub->add_option("--zstd", options->rcpcc.zstd_level,
+                  fmt::format("Level of zstd for all settings [{}]", RcpccOptions{}.zstd_level))
+      ->check(CLI::Range(1, 22));
   sub->add_option("--peers", options->peers, "Other codecs: draco (kd-tree, qp 8 to 14, cl 7)")
       ->delimiter(',')
-      ->check(CLI::IsMember({"draco"}))
-      ->type_name("draco");
+      ->check(CLI::IsMember({"draco"}));
   sub->add_option("--runs", options->runs, "Timed runs of each sweep; the median counts [5]")
       ->check(CLI::Range(1, 1000))
       ->type_name("N");

@@ -64,7 +64,7 @@ Status run(Peer& peer, const PointCloud& cloud, Trial& trial) {
   const double encoded = thread_ms();
   if (!bytes) return tl::unexpected(bytes.error());
   const double decode_begin = thread_ms();
-  const Status decoded = peer.decode(*bytes, trial.decoded);
+  Status decoded = peer.decode(*bytes, trial.decoded);
   const double end = thread_ms();
   if (!decoded) return decoded;
   trial.encode_ms.push_back(encoded - begin);

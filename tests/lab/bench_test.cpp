@@ -64,7 +64,7 @@ class Bench : public testing::Test {
 
   /// A level square of side x side points as KITTI .bin.
   fs::path write_square(const std::string& name, int side) {
-    const fs::path path = folder_ / name;
+    fs::path path = folder_ / name;
     std::ofstream file(path, std::ios::binary);
     for (int i = 0; i < side; ++i) {
       for (int j = 0; j < side; ++j) {
