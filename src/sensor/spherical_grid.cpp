@@ -53,7 +53,7 @@ SphericalProjector::SphericalProjector(const RcpccOptions& options, const Crop& 
   view_.elevation_min = micro_degrees(options.elevation_min_deg);
   view_.elevation_step = micro_degrees(options.params.elevation_step_deg);
   std::int64_t width = std::int64_t{micro_degrees(options.azimuth_max_deg)} - view_.azimuth_min;
-  if (width <= 0) width += 360'000'000;  // the view crosses +-180 degrees
+  while (width <= 0) width += 360'000'000;  // the view crosses +-180 degrees
   view_.cols = steps_in(width, view_.azimuth_step);
   view_.rows =
       steps_in(std::int64_t{micro_degrees(options.elevation_max_deg)} - view_.elevation_min,
@@ -107,6 +107,9 @@ void SphericalProjector::collect(const Batch& batch, SweepCounts& counts) {
   const auto rows = static_cast<float>(view_.rows);
   // A full turn may round to a column past the last one, which then is column 0 again.
   const bool full_turn = static_cast<std::int64_t>(view_.cols) * view_.azimuth_step >= 360'000'000;
+  // Likewise a point on the view's lowest or highest edge, such as a pole, may round past it.
+  constexpr float kSlack = 1.0F / 512;  // steps
+  const float top = std::nextafter(rows, 0.0F);
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   for (std::size_t i = 0; i < batch.size; ++i) {
     const float x = batch.x[i];
@@ -126,7 +129,8 @@ void SphericalProjector::collect(const Batch& batch, SweepCounts& counts) {
       continue;
     }
     float column = batch.column[i];
-    const float height = batch.height[i];
+    float height = batch.height[i];
+    if (height > -kSlack && height < rows + kSlack) height = std::clamp(height, 0.0F, top);
     if (full_turn && column >= cols) column = 0.0F;
     if (!(range <= max_range_ && column < cols && height >= 0.0F && height < rows)) {
       ++counts.out_of_view;
@@ -198,10 +202,11 @@ void SphericalProjector::scatter(RangeImage& image, SweepCounts& counts) {
     }
     counts.points_coded += static_cast<std::uint32_t>(count);
     if (count == 0) continue;
-    // Offsets were truncated downwards: half a unit makes the mean unbiased.
+    // Offsets were truncated downwards: half a unit makes the mean unbiased. A mean of 127.5, just
+    // below the next cell, must not become 128, which is -128 in a byte.
     const auto mean = [count](int sum) {
-      return static_cast<std::int8_t>(
-          std::lround((static_cast<double>(sum) + 0.5 * count) / count));
+      const long rounded = std::lround((static_cast<double>(sum) + 0.5 * count) / count);
+      return static_cast<std::int8_t>(std::min(rounded, 127L));
     };
     image.offsets[static_cast<std::size_t>(r)] = {mean(azimuth), mean(elevation)};
   }
