@@ -39,7 +39,8 @@ void add_sign(MeshBuilder builder, Random& random) {
   builder.surface = {Material::matt, 50, 0};
   builder.cone({0.0, 0.0, -0.2}, 0.035, 0.035, height + 0.6, 8);
   constexpr int kShapes[] = {3, 4, 8, 8};
-  add_plate(builder, height, random.uniform(0.3, 0.4), kShapes[random.below(4)]);
+  const double radius = random.uniform(0.3, 0.4);
+  add_plate(builder, height, radius, kShapes[random.below(4)]);
   if (random.chance(0.3)) add_plate(builder, height - 0.75, 0.25, 4);
 }
 

@@ -14,7 +14,8 @@ constexpr std::uint64_t scatter(std::uint64_t z) {
 }
 
 /// A stream of numbers that its key determines. Streams of different keys are independent, so that
-/// a ray's noise depends on the ray alone and not on who is cast first.
+/// a ray's noise depends on the ray alone and not on who is cast first. Draw at most one number in
+/// the arguments of a call: compilers evaluate those in orders of their own.
 class Random {
  public:
   constexpr explicit Random(std::uint64_t seed, std::uint64_t a = 0, std::uint64_t b = 0,

@@ -63,7 +63,10 @@ Extent add_car(MeshBuilder builder, Random& random) {
   const double slope = van ? 0.35 : 0.75;
   const auto window_high =
       bevelled(cabin_rear + 0.25, cabin_front - slope, width - 0.22, extent.height - 0.08);
-  if (!van) builder.surface = {Material::glass, 7, object};
+  // Clean panes swallow pulses, dirty or coated ones return many.
+  constexpr std::uint8_t kPanes[] = {6, 25, 60};
+  const std::uint8_t pane = kPanes[random.below(3)];
+  if (!van) builder.surface = {Material::glass, pane, object};
   builder.band(window_low, window_high);
   builder.surface = paint;
   const auto roof =

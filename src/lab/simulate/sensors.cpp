@@ -53,7 +53,7 @@ Sensor hdl64() {
   sensor.intensity_scale = 1.2;
   sensor.range_sigma_m = 0.015;
   sensor.range_step_m = 0.002;
-  sensor.reach_m = 90.0;
+  sensor.reach_m = 120.0;
   sensor.min_range_m = 0.9;
   sensor.millimetres = true;
   sensor.ring_major = true;

@@ -76,9 +76,11 @@ class BlockSide {
       } else {
         add_fence(at(x, y), width, random_);
       }
-      add_tree(at(x + random_.uniform(0.3, 0.7) * width, y + random_.uniform(3.5, 7.0)), random_);
+      const double along = random_.uniform(0.3, 0.7);
+      add_tree(at(x + along * width, y + random_.uniform(3.5, 7.0)), random_);
       for (int i = 0; i < 3; ++i) {
-        add_bush(at(x + random_.uniform(0.1, 0.9) * width, y + random_.uniform(1.5, 9.0)), random_);
+        const double beside = random_.uniform(0.1, 0.9);
+        add_bush(at(x + beside * width, y + random_.uniform(1.5, 9.0)), random_);
       }
     }
     MeshBuilder back = at(x, y + kDepth);  // the garden's end: another house's plain wall
@@ -112,7 +114,8 @@ class BlockSide {
     if (random_.chance(0.5)) add_traffic_light(at(-kStraight - 0.5, 0.6, kKerbHeight, true));
     for (int i = 0; i < 4; ++i) add_bollard(at(kStraight + 0.5 + 1.3 * i, 0.4 + 0.18 * i * i));
     for (int i = 0; i < 3; ++i) {
-      add_furniture(at(random_.uniform(-21.0, 21.0), random_.uniform(2.0, 2.5)), random_);
+      const double x = random_.uniform(-21.0, 21.0);
+      add_furniture(at(x, random_.uniform(2.0, 2.5)), random_);
     }
   }
 
