@@ -14,6 +14,10 @@ if(SWEEPCAST_SANITIZE)
     -fsanitize=${SWEEPCAST_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(sweepcast_build INTERFACE -fsanitize=${SWEEPCAST_SANITIZE})
 endif()
+if(SWEEPCAST_FUZZ)
+  # The fuzzer must see which way its input takes through the libraries, not only the target.
+  target_compile_options(sweepcast_build INTERFACE -fsanitize=fuzzer-no-link)
+endif()
 
 # sweepcast_target(NAME): the settings above, and src/ as the root of internal includes.
 function(sweepcast_target name)
