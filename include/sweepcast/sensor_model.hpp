@@ -38,7 +38,9 @@ struct Beam {
 struct SensorModel {
   std::int32_t ticks_per_turn = 0;  ///< steps of the azimuth encoder in a revolution
   std::int32_t direction = 0;       ///< +1 turns counter-clockwise, -1 clockwise, 0 not known
-  std::vector<Beam> beams;          ///< from the highest elevation down
+  /// Ticks by which beams of one firing may be off their lag, as where a driver rounds azimuths.
+  std::int32_t jitter = 0;
+  std::vector<Beam> beams;  ///< from the highest elevation down
 
   [[nodiscard]] bool operator==(const SensorModel&) const = default;
 };

@@ -4,10 +4,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "sensor/beam_geometry.hpp"
 #include "sweepcast/cloud.hpp"
 #include "sweepcast/sensor_model.hpp"
 
@@ -18,6 +20,7 @@ enum class ExtraReason : std::uint8_t {
   not_finite,  ///< a coordinate is NaN or infinite
   zero_range,  ///< at the origin: the sensor's mark for "no return"
   stray,       ///< no beam within reach, or too far away for the range's 32 bits
+  misfit,      ///< farther from its cell's place than the bound: too few such for residuals
   collision,   ///< another point has the cell: a second return, or the sweep's ends overlap
 };
 
@@ -40,12 +43,15 @@ struct BeamImage {
   std::vector<std::int32_t> range;
   std::vector<std::uint32_t> point;  ///< index of the cell's point in the cloud, or kNoPoint
 
-  // Residuals that are added before and after the beam's own: empty where the model holds within
-  // the bound, else one a cell, 0 wherever the cell is within the bound without.
-  std::vector<std::int32_t> azimuth_residual;  ///< in azimuth_step
-  std::vector<std::int32_t> height_residual;   ///< in height_step
-  std::int32_t azimuth_step = 0;               ///< 1e-6 degree
-  std::int32_t height_step = 0;                ///< 10 um
+  // Residuals that are added to the beam's own: empty where the model holds within the bound, else
+  // one a cell, 0 wherever the cell is within the bound without.
+  std::vector<std::int32_t> azimuth_residual;  ///< 1 / azimuth_divisor of a tick
+  std::vector<std::int32_t> height_residual;   ///< in height_step; added to z, at the same rho
+  std::int32_t azimuth_divisor = 1;
+  std::int32_t height_step = 0;  ///< 10 um
+
+  /// What the sweep was deskewed by: undone before projecting, done again after `unproject`.
+  std::optional<Motion> motion;
 
   std::vector<ExtraPoint> extras;  ///< by index
 
@@ -56,9 +62,10 @@ struct BeamImage {
 
 struct BeamGridOptions {
   /// Cells whose point would be off by more get residuals, in steps that bring it within; metres,
-  /// 3-D. 0: never, the error is what the model leaves.
+  /// 3-D, the rounding of ranges apart. Firings whose ticks jitter are gathered in one column.
+  /// 0: no residuals, the error is what the model leaves; a column for every tick that occurs.
   double max_error_m = 0.0;
-  /// A point farther from every beam is a stray, metres (height) ...
+  /// A point farther from every beam is a stray; metres, height.
   double max_height_residual_m = 0.5;
   /// What the sweep was deskewed by, to be undone; copied into the image.
   std::optional<Motion> motion;
@@ -75,6 +82,9 @@ class BeamProjector {
  public:
   /// The model must have passed `check`.
   explicit BeamProjector(const SensorModel& model);
+  BeamProjector(BeamProjector&&) noexcept;
+  BeamProjector& operator=(BeamProjector&&) noexcept;
+  ~BeamProjector();
 
   /// Fills `image` with the points of `cloud`; every point is in exactly one cell or extra. Where
   /// two points want a cell, the one nearer to its azimuth has it, of equal ones the first.
@@ -84,6 +94,10 @@ class BeamProjector {
   /// returns of a sweep make an image of their own.
   void project(const CloudView& cloud, std::span<const std::uint32_t> points,
                const BeamGridOptions& options, BeamImage& image);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 /// Makes clouds of range images; keeps its tables.
@@ -95,6 +109,12 @@ class BeamUnprojector {
   /// Fills the coordinates of `cloud`, one point for each cell with a range, row by row.
   /// Uses rows, cols, firing_tick, range and the residuals of `image`. Same bits on every machine.
   void unproject(const BeamImage& image, PointCloud& cloud);
+
+ private:
+  SensorModel model_;
+  std::vector<BeamGeometry> beams_;
+  std::vector<double> sin_, cos_;  ///< of the firings' ticks
+  std::vector<float> x_, y_, z_;   ///< one row, empty cells included
 };
 
 }  // namespace sweepcast

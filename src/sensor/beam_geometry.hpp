@@ -1,0 +1,23 @@
+// What follows from a sensor model's integers, as doubles.
+#pragma once
+
+#include <vector>
+
+#include "sweepcast/sensor_model.hpp"
+
+namespace sweepcast {
+
+/// One beam. The same doubles on every machine.
+struct BeamGeometry {
+  double tan = 0.0;            ///< of the elevation
+  double slant = 1.0;          ///< distance along the beam per horizontal distance
+  double inverse_slant = 1.0;  ///< horizontal distance per distance along the beam
+  double height_m = 0.0;
+  double lateral_m = 0.0;
+  double phase = 0.0;    ///< azimuth offset, ticks
+  double azimuth = 0.0;  ///< azimuth offset and lag together, radians
+};
+
+[[nodiscard]] std::vector<BeamGeometry> beam_geometry(const SensorModel& model);
+
+}  // namespace sweepcast

@@ -1,0 +1,76 @@
+#include "sweepcast/sensor_model.hpp"
+
+#include <cmath>
+#include <cstdlib>
+#include <string>
+
+#include "core/trig.hpp"
+#include "sensor/beam_geometry.hpp"
+
+namespace sweepcast {
+namespace {
+
+constexpr std::int32_t kMaxTangent = 100 * kTangentUnits;
+constexpr std::int32_t kMaxOffset = 10 * kLengthUnits;
+constexpr std::int32_t kMaxAngle = 360 * kAngleUnits;
+
+bool within(std::int32_t value, std::int32_t limit) {
+  return value >= -limit && value <= limit;
+}
+
+}  // namespace
+
+Status check(const SensorModel& model) {
+  const auto wrong = [](const std::string& what) {
+    return fail(ErrorCode::invalid_argument, "sensor model: " + what);
+  };
+  if (model.beams.empty() || model.beams.size() > static_cast<std::size_t>(kMaxBeams)) {
+    return wrong(std::to_string(model.beams.size()) + " beams; 1 to 1024 can be");
+  }
+  if (model.ticks_per_turn < 1 || model.ticks_per_turn > kMaxTicks) {
+    return wrong(std::to_string(model.ticks_per_turn) + " ticks per turn; 1 to 1048576 can be");
+  }
+  if (!within(model.direction, 1)) return wrong("direction must be -1, 0 or 1");
+  if (model.jitter < 0 || model.jitter > model.ticks_per_turn / 2) {
+    return wrong("jitter of " + std::to_string(model.jitter) +
+                 " ticks; at most half a turn can be");
+  }
+  for (std::size_t k = 0; k < model.beams.size(); ++k) {
+    const Beam& beam = model.beams[k];
+    const std::string name = "beam " + std::to_string(k);
+    if (!within(beam.tan_elevation, kMaxTangent)) return wrong(name + ": tan_elevation beyond 100");
+    if (!within(beam.height, kMaxOffset)) return wrong(name + ": height beyond 10 m");
+    if (!within(beam.lateral_offset, kMaxOffset)) {
+      return wrong(name + ": lateral_offset beyond 10 m");
+    }
+    if (!within(beam.azimuth_offset, kMaxAngle)) {
+      return wrong(name + ": azimuth_offset beyond 360 degrees");
+    }
+    if (!within(beam.lag, model.ticks_per_turn)) return wrong(name + ": lag beyond a turn");
+    if (k > 0 && beam.tan_elevation > model.beams[k - 1].tan_elevation) {
+      return wrong(name + ": not below the one before; beams go from the highest down");
+    }
+  }
+  return {};
+}
+
+std::vector<BeamGeometry> beam_geometry(const SensorModel& model) {
+  std::vector<BeamGeometry> beams;
+  beams.reserve(model.beams.size());
+  for (const Beam& beam : model.beams) {
+    BeamGeometry g;
+    g.tan = static_cast<double>(beam.tan_elevation) / kTangentUnits;
+    g.slant = std::sqrt(1.0 + g.tan * g.tan);
+    g.inverse_slant = 1.0 / g.slant;
+    g.height_m = static_cast<double>(beam.height) / kLengthUnits;
+    g.lateral_m = static_cast<double>(beam.lateral_offset) / kLengthUnits;
+    const double turns = static_cast<double>(beam.azimuth_offset) / (360.0 * kAngleUnits);
+    g.phase = turns * model.ticks_per_turn;
+    g.azimuth = 2.0 * kPi *
+                (turns + static_cast<double>(beam.lag) / static_cast<double>(model.ticks_per_turn));
+    beams.push_back(g);
+  }
+  return beams;
+}
+
+}  // namespace sweepcast
