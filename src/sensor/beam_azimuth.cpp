@@ -1,0 +1,223 @@
+#include "sensor/beam_azimuth.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+
+#include "core/trig.hpp"
+
+namespace sweepcast {
+namespace {
+
+constexpr double kTurn = 2.0 * kPi;
+
+// Encoders and column counts of spinning LiDARs, and other round numbers.
+constexpr std::array kEncoders{360,  400,  450,  500,  512,  600,   720,   800,   900,
+                               1000, 1024, 1200, 1440, 1500, 1600,  1800,  2000,  2048,
+                               2250, 2400, 2500, 2880, 3000, 3600,  4000,  4096,  4500,
+                               5000, 6000, 7200, 8192, 9000, 10000, 12000, 18000, 36000};
+
+struct Sample {
+  double turn, inverse_rho;
+};
+
+// One beam's samples of all sweeps, at most `cap`, evenly thinned.
+std::vector<std::vector<Sample>> by_beam(std::span<const BeamSamples> sweeps, std::size_t beams) {
+  std::vector<std::vector<Sample>> samples(beams);
+  for (const BeamSamples& sweep : sweeps) {
+    for (std::size_t i = 0; i < sweep.size(); ++i) {
+      samples[sweep.beam[i]].push_back({sweep.turn[i], sweep.inverse_rho[i]});
+    }
+  }
+  return samples;
+}
+
+double wrap(double phase) {
+  return phase - std::floor(phase + 0.5);
+}
+
+// Mean phasor of the samples' positions between ticks. Far points weigh more: coordinates are
+// rounded, so that the azimuths of near ones are coarse.
+std::complex<double> phasor(std::span<const Sample> samples, double ticks, double lateral) {
+  double re = 0.0;
+  double im = 0.0;
+  double weights = 0.0;
+  for (const Sample& s : samples) {
+    const double phase = ticks * (s.turn - lateral * s.inverse_rho / kTurn);
+    const double weight = 1.0 / (s.inverse_rho + 0.1);
+    const SinCos at = sin_cos(kTurn * wrap(phase));
+    re += weight * at.cos;
+    im += weight * at.sin;
+    weights += weight;
+  }
+  return weights > 0.0 ? std::complex<double>(re, im) / weights : 0.0;
+}
+
+std::vector<Sample> thinned(std::span<const Sample> samples, std::size_t cap) {
+  std::vector<Sample> some;
+  const std::size_t step = samples.size() / cap + 1;
+  for (std::size_t i = 0; i < samples.size(); i += step) some.push_back(samples[i]);
+  return some;
+}
+
+// The lateral offset of highest coherence, on a grid; 0 unless another is clearly better.
+double search_lateral(std::span<const Sample> samples, double ticks) {
+  constexpr double kStep = 0.003;
+  double best = std::abs(phasor(samples, ticks, 0.0)) * 1.03;
+  double lateral = 0.0;
+  for (int i = -25; i <= 25; ++i) {
+    const double here = std::abs(phasor(samples, ticks, i * kStep));
+    if (here > best) {
+      best = here;
+      lateral = i * kStep;
+    }
+  }
+  return lateral;
+}
+
+BeamAzimuth fit_beam(std::span<const Sample> samples, double ticks, bool search) {
+  BeamAzimuth fit;
+  if (samples.empty()) return fit;
+  if (search) fit.lateral_m = search_lateral(thinned(samples, 600), ticks);
+  fit.phase = std::arg(phasor(samples, ticks, fit.lateral_m)) / kTurn;
+  // Least squares of the wrapped phase over 1 and 1/rho; robust against points between ticks. A
+  // weak pull keeps the lateral offset of a beam that sees one distance.
+  for (int round = 0; round < 4; ++round) {
+    double w = 0, q = 0, qq = 1e-4, e = 0, qe = 0;
+    for (const Sample& s : samples) {
+      const double model = fit.phase + ticks * fit.lateral_m * s.inverse_rho / kTurn;
+      const double miss = wrap(ticks * s.turn - model);
+      const double weight = 1.0 / ((s.inverse_rho + 0.1) * (1.0 + 60.0 * miss * miss));
+      w += weight;
+      q += weight * s.inverse_rho;
+      qq += weight * s.inverse_rho * s.inverse_rho;
+      e += weight * miss;
+      qe += weight * s.inverse_rho * miss;
+    }
+    const double det = w * qq - q * q;
+    if (det < 1e-6 * w * qq) break;
+    fit.phase += (e * qq - q * qe) / det;
+    fit.lateral_m += (w * qe - q * e) / det * kTurn / ticks;
+  }
+  fit.phase = wrap(fit.phase);
+  fit.coherence = std::abs(phasor(samples, ticks, fit.lateral_m));
+  return fit;
+}
+
+// 95th percentile of the sideways distance to the nearest tick, metres.
+double sideways_error(std::span<const Sample> samples, double ticks, const BeamAzimuth& fit) {
+  std::vector<double> errors;
+  for (const Sample& s : samples) {
+    const double model = fit.phase + ticks * fit.lateral_m * s.inverse_rho / kTurn;
+    errors.push_back(std::abs(wrap(ticks * s.turn - model)) / ticks * kTurn / s.inverse_rho);
+  }
+  const auto at = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() * 95 / 100);
+  std::nth_element(errors.begin(), at, errors.end());
+  return errors.empty() ? 0.0 : *at;
+}
+
+}  // namespace
+
+int find_ticks(std::span<const BeamSamples> sweeps, std::size_t beams) {
+  auto samples = by_beam(sweeps, beams);
+  std::sort(samples.begin(), samples.end(),
+            [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  samples.resize(std::min<std::size_t>(samples.size(), 5));
+  for (auto& beam : samples) beam = thinned(beam, 1500);
+  std::array<double, kEncoders.size()> errors{};
+  double best = 1e9;
+  for (std::size_t c = 0; c < kEncoders.size(); ++c) {
+    double coherence = 0.0;
+    for (const auto& beam : samples) {
+      const BeamAzimuth fit = fit_beam(beam, kEncoders[c], true);
+      coherence += fit.coherence / static_cast<double>(samples.size());
+      errors[c] += sideways_error(beam, kEncoders[c], fit) / static_cast<double>(samples.size());
+    }
+    // A fine tick is near to any azimuth: only coherence tells that it means something.
+    if (coherence < 0.5) errors[c] = 1e9;
+    best = std::min(best, errors[c]);
+  }
+  if (best > 1e8) return 0;
+  for (std::size_t c = 0; c < kEncoders.size(); ++c) {
+    if (errors[c] <= 1.2 * best + 2e-4) return kEncoders[c];
+  }
+  return 0;
+}
+
+std::vector<BeamAzimuth> fit_azimuths(std::span<const BeamSamples> sweeps, std::size_t beams,
+                                      int ticks_per_turn) {
+  std::vector<BeamAzimuth> fits;
+  for (const auto& samples : by_beam(sweeps, beams)) {
+    fits.push_back(fit_beam(samples, ticks_per_turn, true));
+  }
+  return fits;
+}
+
+void fit_lags(std::span<const BeamSamples> sweeps, int ticks_per_turn,
+              std::span<BeamAzimuth> beams) {
+  constexpr double kMaxLagTurns = 16.0 / 360.0;
+  const int reach = static_cast<int>(ticks_per_turn * kMaxLagTurns);
+  const auto turn = static_cast<std::size_t>(ticks_per_turn);
+  // Occupied ticks of each beam in each of the first sweeps.
+  const std::size_t used = std::min<std::size_t>(sweeps.size(), 3);
+  std::vector<std::vector<int>> ticks(used * beams.size());
+  for (std::size_t n = 0; n < used; ++n) {
+    for (std::size_t i = 0; i < sweeps[n].size(); ++i) {
+      const std::size_t k = sweeps[n].beam[i];
+      const double lateral = beams[k].lateral_m * sweeps[n].inverse_rho[i] / kTurn;
+      const double at = ticks_per_turn * (sweeps[n].turn[i] - lateral) - beams[k].phase;
+      const int tick = static_cast<int>(std::lround(at)) % ticks_per_turn;
+      ticks[n * beams.size() + k].push_back(tick < 0 ? tick + ticks_per_turn : tick);
+    }
+  }
+  std::vector<std::size_t> order(beams.size());
+  for (std::size_t k = 0; k < beams.size(); ++k) order[k] = k;
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return ticks[a].size() > ticks[b].size(); });
+
+  std::vector<std::vector<float>> fired(used, std::vector<float>(turn, 0.0F));
+  const auto add = [&](std::size_t k, float weight) {
+    for (std::size_t n = 0; n < used; ++n) {
+      for (const int tick : ticks[n * beams.size() + k]) {
+        fired[n]
+             [static_cast<std::size_t>((tick - beams[k].lag + ticks_per_turn) % ticks_per_turn)] +=
+            weight;
+      }
+    }
+  };
+  std::vector<double> score(static_cast<std::size_t>(2 * reach + 1));
+  const auto best_lag = [&](std::size_t k) {
+    std::fill(score.begin(), score.end(), 0.0);
+    for (std::size_t n = 0; n < used; ++n) {
+      const auto& own = ticks[n * beams.size() + k];
+      const std::size_t step = own.size() / 700 + 1;
+      for (std::size_t i = 0; i < own.size(); i += step) {
+        int at = (own[i] - reach + ticks_per_turn) % ticks_per_turn;
+        for (int lag = reach; lag >= -reach; --lag) {
+          score[static_cast<std::size_t>(lag + reach)] +=
+              std::min(fired[n][static_cast<std::size_t>(at)], 8.0F);
+          if (++at == ticks_per_turn) at = 0;
+        }
+      }
+    }
+    const double most = *std::max_element(score.begin(), score.end());
+    for (int lag = 0; lag <= reach; ++lag) {
+      if (score[static_cast<std::size_t>(reach + lag)] >= 0.985 * most) return lag;
+      if (score[static_cast<std::size_t>(reach - lag)] >= 0.985 * most) return -lag;
+    }
+    return 0;
+  };
+  add(order.front(), 1.0F);
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    beams[order[i]].lag = best_lag(order[i]);
+    add(order[i], 1.0F);
+  }
+  for (const std::size_t k : order) {  // the first ones had little to go by
+    add(k, -1.0F);
+    beams[k].lag = best_lag(k);
+    add(k, 1.0F);
+  }
+}
+
+}  // namespace sweepcast

@@ -1,0 +1,44 @@
+// The azimuths of a spinning LiDAR: the ticks of its encoder, and where each beam looks and
+// stands relative to them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sweepcast/sensor_model.hpp"
+
+namespace sweepcast {
+
+/// The points of one sweep, in columns, beams known.
+struct BeamSamples {
+  std::vector<float> turn;         ///< azimuth atan2(y, x) in turns, [0, 1)
+  std::vector<float> inverse_rho;  ///< 1 / horizontal distance, 1/m
+  std::vector<std::uint16_t> beam;
+
+  [[nodiscard]] std::size_t size() const { return turn.size(); }
+};
+
+/// A beam's azimuth: turn = (tick + phase) / ticks_per_turn + lateral * inverse_rho / (2 pi).
+struct BeamAzimuth {
+  double phase = 0.0;  ///< ticks, [-1/2, 1/2)
+  double lateral_m = 0.0;
+  int lag = 0;             ///< ticks
+  double coherence = 0.0;  ///< 1: every azimuth a whole tick; about 0: anywhere
+};
+
+/// The encoder's ticks in a turn: of the numbers that encoders have, the smallest whose ticks the
+/// azimuths return to as exactly as to any. 0 where they return to none.
+[[nodiscard]] int find_ticks(std::span<const BeamSamples> sweeps, std::size_t beams);
+
+/// Phase and lateral offset of each beam, from the coherence of its points' phases.
+[[nodiscard]] std::vector<BeamAzimuth> fit_azimuths(std::span<const BeamSamples> sweeps,
+                                                    std::size_t beams, int ticks_per_turn);
+
+/// Sets each beam's lag: the shift at which its ticks best fall on those of the others. Where a
+/// smaller shift does as well (firings at equal distances), the smaller.
+void fit_lags(std::span<const BeamSamples> sweeps, int ticks_per_turn,
+              std::span<BeamAzimuth> beams);
+
+}  // namespace sweepcast
