@@ -59,8 +59,7 @@ Status parse_frame_header(std::span<const std::byte> bytes, FrameHeader& header)
   const std::size_t checked = in.position();
   const auto checksum = in.get<std::uint32_t>();
   if (!in.ok()) {
-    // A size beyond its cap stops the reader as the end of the bytes does.
-    return fail(in.remaining() < sizeof(checksum) ? ErrorCode::truncated : ErrorCode::corrupt,
+    return fail(in.ran_out() ? ErrorCode::truncated : ErrorCode::corrupt,
                 "the head of the frame is cut short or damaged");
   }
   if (checksum != crc32(bytes.first(checked))) {

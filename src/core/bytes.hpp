@@ -111,19 +111,25 @@ class ByteReader {
   }
 
   [[nodiscard]] bool ok() const { return ok_; }
+  /// Whether it was the end of the bytes that turned it bad, rather than a value.
+  [[nodiscard]] bool ran_out() const { return ran_out_; }
   [[nodiscard]] bool at_end() const { return at_ == bytes_.size(); }
   [[nodiscard]] std::size_t position() const { return at_; }
   [[nodiscard]] std::size_t remaining() const { return bytes_.size() - at_; }
 
  private:
   [[nodiscard]] bool has(std::size_t count) {
-    if (!ok_ || count > bytes_.size() - at_) ok_ = false;
+    if (ok_ && count > bytes_.size() - at_) {
+      ok_ = false;
+      ran_out_ = true;
+    }
     return ok_;
   }
 
   std::span<const std::byte> bytes_;
   std::size_t at_ = 0;
   bool ok_ = true;
+  bool ran_out_ = false;
 };
 
 }  // namespace sweepcast

@@ -76,6 +76,7 @@ TEST(ByteReader, PastTheEndTurnsBadAndStaysBad) {
   EXPECT_TRUE(in.get_bytes(1).empty());
   EXPECT_TRUE(in.get_text().empty());
   EXPECT_FALSE(in.ok());
+  EXPECT_TRUE(in.ran_out());
   EXPECT_EQ(in.position(), 0U);
   EXPECT_EQ(in.remaining(), 3U);
 }
@@ -110,6 +111,9 @@ TEST(ByteReader, HoldsVarintsToTheirCap) {
   EXPECT_EQ(in.get_varint(1000), 0U);
   EXPECT_FALSE(in.ok());
   EXPECT_EQ(in.get_varint(1000), 0U);
+  EXPECT_FALSE(in.ran_out());  // a value turned it bad
+  EXPECT_TRUE(in.get_bytes(1000).empty());
+  EXPECT_FALSE(in.ran_out());
 }
 
 TEST(ByteReader, RefusesVarintsBeyond64Bits) {

@@ -105,9 +105,10 @@ class Moments {
     const double c1 = (q - f * c2) / d;
     const double c0 = (p - b * c1 - c * c2) / a;
     if (!(c0 > 1e-3)) return {};  // the range at the origin would be negative or absurd
+    const std::int32_t range = quantise(reference_ / c0, steps.range);
+    if (range > kLargestRange) return {};  // `read_surfaces` would refuse it
     const double to_mm = reference_ / (c0 * c0);
-    return {quantise(reference_ / c0, steps.range), quantise(c1 * to_mm, steps.slope),
-            quantise(c2 * to_mm, steps.slope)};
+    return {range, quantise(c1 * to_mm, steps.slope), quantise(c2 * to_mm, steps.slope)};
   }
 
  private:
