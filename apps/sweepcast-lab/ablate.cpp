@@ -80,7 +80,7 @@ void report_text(const lab::Ablation& tables, const AblateCommand& options,
   fmt::print("Fitted cells, mean absolute error of the range, cm\n");
   fmt::print("  model    threshold     ours    paper   fitted %\n");
   for (const ModelRow& row : tables.models) {
-    fmt::print("  {:7} {:8.1f} m {:8.2f} {:8.2f} {:10.1f}\n", model_name(row.model),
+    fmt::print("  {:7} {:>8.1f} m {:>8.2f} {:>8.2f} {:>10.1f}\n", model_name(row.model),
                row.threshold_m, cm(row.ours.fitted_mae_m), row.paper_fitted_mae_cm,
                100.0 * row.ours.fitted_share);
   }
@@ -89,7 +89,7 @@ void report_text(const lab::Ablation& tables, const AblateCommand& options,
   fmt::print("                  unfit error       all cells         ratio\n");
   fmt::print("                  ours   paper    ours   paper    ours   paper\n");
   for (const UnfitRow& row : tables.unfit) {
-    fmt::print("  {:14} {:7.2f} {:7.2f} {:7.2f} {:7.2f} {:7.1f} {:7.1f}\n", coding_name(row),
+    fmt::print("  {:14} {:>7.2f} {:>7.2f} {:>7.2f} {:>7.2f} {:>7.1f} {:>7.1f}\n", coding_name(row),
                cm(row.ours.unfit_mae_m), row.paper_unfit_mae_cm, cm(row.ours.mae_m),
                row.paper_mae_cm, row.ours.ratio, row.paper_ratio);
   }

@@ -171,13 +171,18 @@ std::string csv_text(const std::vector<BenchRow>& rows) {
   return text;
 }
 
+Status check_csv(const fs::path& path) {
+  if (std::ofstream(path, std::ios::app)) return {};
+  return fail(ErrorCode::io,
+              path.string() + ": cannot be written; is the folder there and writable?");
+}
+
 Status write_csv(const std::vector<BenchRow>& rows, const fs::path& path) {
   std::ofstream file(path, std::ios::binary);
   file << csv_text(rows);
   file.close();
   if (file.good()) return {};
-  return fail(ErrorCode::io,
-              path.string() + ": cannot be written; is the folder there, writable and not full?");
+  return fail(ErrorCode::io, path.string() + ": cannot be written; is the disk full?");
 }
 
 void report_json(const std::vector<BenchRow>& rows, std::size_t sweep_count, int runs) {
@@ -202,8 +207,9 @@ void report_table(const std::vector<BenchRow>& rows, std::size_t sweep_count, in
   for (const BenchRow& row : rows) {
     const lab::Distortion& d = row.distortion;
     fmt::print(
-        "{:9} {:{}} {:7.1f} {:7.1f} {:8.2f} {:6.2f} {:6.2f} {:6.2f} {:6.2f} {:6.2f} {:6.2f} "
-        "{:+9.4f} {:+9.4f} {:7.2f} {:7.2f}\n",
+        "{:9} {:{}} {:>7.1f} {:>7.1f} {:>8.2f} {:>6.2f} {:>6.2f} {:>6.2f} {:>6.2f} {:>6.2f} "
+        "{:>6.2f} "
+        "{:>+9.4f} {:>+9.4f} {:>7.2f} {:>7.2f}\n",
         row.codec, row.setting, width, row.ratio, 100.0 * row.points_out / row.points_in,
         100.0 * d.mean_o2d, d.d1_psnr, d.d2_psnr, d.f_score[0], d.f_score[1], d.f_score[2],
         d.f_score[3], d.mean_azimuth_error_deg, d.mean_elevation_error_deg, row.encode_ms,
@@ -215,11 +221,20 @@ void report_table(const std::vector<BenchRow>& rows, std::size_t sweep_count, in
       sweep_count, runs);
 }
 
+/// Whether the files can be written, before the time is spent that measuring takes.
+Status check_outputs(const BenchCommand& options) {
+  if (!options.csv.empty()) {
+    if (Status csv = check_csv(options.csv); !csv) return csv;
+  }
+  return options.plot.empty() ? Status{} : lab::check_plot(options.plot);
+}
+
 Status bench(const BenchCommand& options) {
   const auto sweeps = collect_clouds(options.inputs);
   if (!sweeps) return tl::unexpected(sweeps.error());
   const auto peers = make_peers(options);
   if (!peers) return tl::unexpected(peers.error());
+  if (Status outputs = check_outputs(options); !outputs) return outputs;
   Progress progress("measuring", sweeps->size());
   const auto on_sweep = [&progress](std::string_view name) { progress.step(name); };
   const auto rows = lab::bench(*sweeps, *peers, {.runs = options.runs, .on_sweep = on_sweep});
@@ -246,20 +261,24 @@ void add_bench(CLI::App& app, Command& command) {
       ->required();
   sub->add_option("--codec", options->codecs, "Our codecs to measure [rcpcc]")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->check(CLI::IsMember({"rcpcc"}));
   sub->add_option("--levels", options->levels,
                   fmt::format("Levels of rcpcc [all, and --params {}]", kPaperSetting))
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->check(CLI::IsMember({"0", "1", "2", "3", "4", "5", "all"}));
   sub->add_option("--params", options->params,
                   "A setting of rcpcc: steps in degrees, threshold and quantiser step in metres; "
                   "may be repeated")
+      ->allow_extra_args(false)
       ->type_name("AZIMUTH,ELEVATION,THRESHOLD,QSTEP");
   sub->add_option("--zstd", options->rcpcc.zstd_level,
                   fmt::format("Level of zstd for all settings [{}]", RcpccOptions{}.zstd_level))
       ->check(CLI::Range(1, 22));
   sub->add_option("--peers", options->peers, "Other codecs: draco (kd-tree, qp 8 to 14, cl 7)")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->check(CLI::IsMember({"draco"}));
   sub->add_option("--runs", options->runs, "Timed runs of each sweep; the median counts [5]")
       ->check(CLI::Range(1, 1000))

@@ -108,8 +108,9 @@ void report_text(const Distortion& d) {
   fmt::print("original   {}\n", points_text(d.points_original, d.left_out_original));
   fmt::print("decoded    {}\n\n", points_text(d.points_decoded, d.left_out_decoded));
   fmt::print("distance, m            mean       rms       max\n");
-  fmt::print("original to decoded {:9.4f} {:9.4f} {:9.4f}\n", d.mean_o2d, d.rms_o2d, d.max_o2d);
-  fmt::print("decoded to original {:9.4f} {:9.4f} {:9.4f}\n\n", d.mean_d2o, d.rms_d2o, d.max_d2o);
+  fmt::print("original to decoded {:>9.4f} {:>9.4f} {:>9.4f}\n", d.mean_o2d, d.rms_o2d, d.max_o2d);
+  fmt::print("decoded to original {:>9.4f} {:>9.4f} {:>9.4f}\n\n", d.mean_d2o, d.rms_d2o,
+             d.max_d2o);
   fmt::print("PSNR, dB      D1 {:.2f}, D2 {:.2f} (peak {:.2f} m)\n", d.d1_psnr, d.d2_psnr,
              lab::kPeakM);
   fmt::print("F-score, %    {:.2f} at 2 cm, {:.2f} at 5 cm, {:.2f} at 10 cm, {:.2f} at 20 cm\n",
@@ -127,7 +128,8 @@ void report_table(const std::vector<NamedDistortion>& sweeps, const Distortion& 
       "sweep", width);
   const auto line = [width](const std::string& name, const Distortion& d) {
     fmt::print(
-        "{:{}} {:9.0f} {:9.0f} {:9.4f} {:9.4f} {:9.2f} {:9.2f} {:7.2f} {:7.2f} {:7.2f} {:7.2f}\n",
+        "{:{}} {:>9.0f} {:>9.0f} {:>9.4f} {:>9.4f} {:>9.2f} {:>9.2f} {:>7.2f} {:>7.2f} {:>7.2f} "
+        "{:>7.2f}\n",
         name, width, d.points_original, d.points_decoded, d.mean_o2d, d.mean_d2o, d.d1_psnr,
         d.d2_psnr, d.f_score[0], d.f_score[1], d.f_score[2], d.f_score[3]);
   };

@@ -130,13 +130,12 @@ std::string rate_distortion_script(std::span<const BenchRow> rows,
   return script + "unset multiplot\nunset output\n";
 }
 
-Status plot_rate_distortion(std::span<const BenchRow> rows, const std::filesystem::path& output) {
+Status check_plot(const std::filesystem::path& output) {
   const std::string file = output.string();
   if (!is_svg(output) && output.extension() != ".png") {
     return fail(ErrorCode::invalid_argument,
                 file + ": plots are .png or .svg; give the file one of these extensions");
   }
-  if (rows.empty()) return fail(ErrorCode::invalid_argument, file + ": nothing to plot");
   if (!has_gnuplot()) {
     return fail(ErrorCode::not_found,
                 file + ": gnuplot, which draws the plot, is absent; apt-get install gnuplot-nox");
@@ -144,6 +143,13 @@ Status plot_rate_distortion(std::span<const BenchRow> rows, const std::filesyste
   if (!std::ofstream(output, std::ios::app)) {
     return fail(ErrorCode::io, file + ": cannot be written; is the folder there and writable?");
   }
+  return {};
+}
+
+Status plot_rate_distortion(std::span<const BenchRow> rows, const std::filesystem::path& output) {
+  const std::string file = output.string();
+  if (rows.empty()) return fail(ErrorCode::invalid_argument, file + ": nothing to plot");
+  if (Status possible = check_plot(output); !possible) return possible;
   const std::string script = rate_distortion_script(rows, output);
   std::FILE* pipe = popen("gnuplot >/dev/null", "w");
   if (pipe == nullptr) return fail(ErrorCode::io, file + ": gnuplot could not be started");
