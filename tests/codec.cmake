@@ -16,3 +16,12 @@ target_include_directories(codec_frame_test PRIVATE ${PROJECT_SOURCE_DIR}/fuzz)
 sweepcast_test(codec/mutation)
 target_include_directories(codec_mutation_test PRIVATE ${PROJECT_SOURCE_DIR}/fuzz)
 sweepcast_test(codec/real_sweeps sweepcast_measure)
+
+# Frames of earlier versions; tests/golden/README.md has the rule.
+sweepcast_test(golden/golden)
+target_compile_definitions(golden_golden_test
+  PRIVATE SWEEPCAST_GOLDEN="${CMAKE_CURRENT_SOURCE_DIR}/golden")
+add_executable(make_golden golden/make_golden.cpp)
+target_link_libraries(make_golden PRIVATE sweepcast GTest::gtest)
+target_include_directories(make_golden PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+sweepcast_target(make_golden)

@@ -1,0 +1,76 @@
+// The small sweeps and options that golden frames were made of, and the checksum of a cloud.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "codec/scene.hpp"
+#include "core/bytes.hpp"
+#include "core/crc32.hpp"
+
+namespace sweepcast::test {
+
+struct GoldenSource {
+  std::string name;
+  EncoderOptions options;
+  PointCloud cloud;
+};
+
+/// New ones go at the end; see README.md.
+inline std::vector<GoldenSource> golden_sources() {
+  std::vector<GoldenSource> sources;
+  const auto add = [&](const char* name, const PointCloud& cloud, auto change) {
+    EncoderOptions options;
+    change(options.rcpcc);
+    sources.push_back({name, options, cloud});
+  };
+  const PointCloud sweep = street(16, 180);
+  PointCloud one;
+  add_point(one, 3, -4, 0.5);
+  add("empty", {}, [](RcpccOptions&) {});
+  add("one_point", one, [](RcpccOptions&) {});
+  add("default", sweep, [](RcpccOptions&) {});
+  add("level0", sweep, [](RcpccOptions& o) { o.params = kRcpccLevels[0]; });
+  add("level5", sweep, [](RcpccOptions& o) { o.params = kRcpccLevels[5]; });
+  add("plane_8x8", sweep, [](RcpccOptions& o) {
+    o.params = {2, 1, 0.2, 0.1};
+    o.model = SurfaceModel::plane;
+    o.block_size = 8;
+    o.region_size = 8;
+  });
+  add("large_blocks_truncated", sweep, [](RcpccOptions& o) {
+    o.block_size = 16;
+    o.region_size = 32;
+    o.rounding = Rounding::truncate;
+  });
+  add("raw_unfit", sweep, [](RcpccOptions& o) {
+    o.params = {4, 2, 0.1, 0.2};
+    o.unfit = UnfitCoding::raw;
+  });
+  add("across_the_seam", sweep, [](RcpccOptions& o) {
+    o.azimuth_min_deg = 100;
+    o.azimuth_max_deg = -100;
+    o.elevation_min_deg = -20;
+    o.elevation_max_deg = 5;
+    o.collision = CollisionRule::nearest_range;
+    o.region_size = 16;
+    o.zstd_level = 19;
+  });
+  return sources;
+}
+
+/// CRC-32 of the coordinates' bits: x, y, z of each point, little-endian.
+inline std::uint32_t checksum_of(const PointCloud& cloud) {
+  Bytes bytes;
+  ByteWriter out(bytes);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    for (const float value : {cloud.x[i], cloud.y[i], cloud.z[i]}) {
+      out.put(std::bit_cast<std::uint32_t>(value));
+    }
+  }
+  return crc32(bytes);
+}
+
+}  // namespace sweepcast::test
