@@ -173,6 +173,7 @@ class SweepWriter {
     const int count =
         std::min(options_.threads > 0 ? options_.threads : cores, drive_.options().sweeps);
     std::vector<std::thread> threads;
+    threads.reserve(static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i) {
       threads.emplace_back([this] { work(); });
     }

@@ -163,7 +163,8 @@ Town build_town(std::uint64_t seed) {
   for (int j = kFirstBlock; j <= kLastBlock; ++j) {
     for (int i = kFirstBlock; i <= kLastBlock; ++i) {
       const Vec3 middle{(i + 0.5) * kPitch, (j + 0.5) * kPitch, 0.0};
-      const auto number = static_cast<std::uint64_t>((j + 8) * 16 + i + 8);
+      const auto number =
+          static_cast<std::uint64_t>(j + 8) * 16 + static_cast<std::uint64_t>(i + 8);
       Random random(seed, 2, number);
       add_block_ground(world, town.terrain, middle.x, middle.y, random);
       // The loop passes blocks -1 to 2; from there the others are seen end on, far away.
