@@ -40,6 +40,10 @@ bool add_up(const SweepCounts& counts) {
   return gone == counts.points_in;
 }
 
+std::string count_of(std::uint64_t count, std::string_view noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
 double ratio(std::uint64_t points_in, std::uint64_t bytes) {
   constexpr double kBytesPerPoint = 16.0;
   return bytes == 0 ? 0.0

@@ -52,6 +52,9 @@ class CountSums {
 /// True where `points_in` is the sum of all the others, as it must be.
 [[nodiscard]] bool add_up(const SweepCounts& counts);
 
+/// "1 frame", "2 frames".
+[[nodiscard]] std::string count_of(std::uint64_t count, std::string_view noun);
+
 /// Compression as the paper counts it: 16 bytes for each point that came in, over `bytes`.
 /// 0 where there are no bytes.
 [[nodiscard]] double ratio(std::uint64_t points_in, std::uint64_t bytes);

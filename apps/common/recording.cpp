@@ -5,15 +5,19 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "common/counts.hpp"
+
 namespace sweepcast::app {
 
 namespace {
 
+bool is_control(char c) {
+  const auto byte = static_cast<unsigned char>(c);
+  return byte < 0x20 || byte == 0x7F;
+}
+
 bool is_plain_file_name(const std::string& name) {
-  const auto is_harmful = [](char c) {
-    const auto byte = static_cast<unsigned char>(c);
-    return byte < 0x20 || byte == 0x7F || c == '/' || c == '\\';
-  };
+  const auto is_harmful = [](char c) { return is_control(c) || c == '/' || c == '\\'; };
   return name != "." && name != ".." && std::none_of(name.begin(), name.end(), is_harmful);
 }
 
@@ -25,17 +29,21 @@ Status check_complete(const std::filesystem::path& path, const SweepReader& read
   for (const SweepEntry& entry : reader.entries()) end = std::max(end, entry.offset + entry.size);
   if (end == reader.file_size()) return {};
   return fail(ErrorCode::truncated,
-              fmt::format("{}: cut short or damaged behind its last whole frame: {} frames are "
-                          "there, what followed is lost; encode or fetch the rest again",
-                          path.string(), reader.entries().size()));
+              fmt::format("{}: cut short or damaged behind its last whole frame: {} "
+                          "read, what followed is lost; encode or fetch the rest again",
+                          path.string(), count_of(reader.entries().size(), "whole frame")));
 }
 
 std::string frame_error(const std::filesystem::path& path, const SweepReader& reader, std::size_t i,
                         const std::string& what) {
   const std::string& name = reader.entries()[i].name;
-  const bool printable = !name.empty() && is_plain_file_name(name);
-  const std::string known = printable ? fmt::format(" ({})", name) : "";
+  const std::string known = name.empty() ? "" : fmt::format(" ({})", printable(name));
   return fmt::format("{}: frame {}{}: {}", path.string(), i, known, what);
+}
+
+std::string printable(std::string text) {
+  std::replace_if(text.begin(), text.end(), is_control, '?');
+  return text;
 }
 
 Result<std::string> SweepNames::next(const SweepEntry& entry, const FrameHeader& header) {

@@ -21,6 +21,9 @@ namespace sweepcast::app {
 [[nodiscard]] std::string frame_error(const std::filesystem::path& path, const SweepReader& reader,
                                       std::size_t i, const std::string& what);
 
+/// A text from a file, safe for a terminal: control characters become question marks.
+[[nodiscard]] std::string printable(std::string text);
+
 /// Names the sweeps of a file so that each can become a file of its own in one folder.
 class SweepNames {
  public:

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "common/counts.hpp"
 #include "common/cpu_time.hpp"
 #include "common/progress.hpp"
 #include "common/recording.hpp"
@@ -95,7 +96,8 @@ void report_text(const DecodeOptions& options, const std::vector<Decoded>& frame
     points += frame.points;
     milliseconds += frame.decode_ms;
   }
-  fmt::print("{}: {} sweeps, {} points\n", options.folder.string(), frames.size(), points);
+  fmt::print("{}: {}, {}\n", options.folder.string(), count_of(frames.size(), "sweep"),
+             count_of(points, "point"));
   if (frames.empty()) return;
   fmt::print("  {:.1f} ms of CPU time a frame\n",
              milliseconds / static_cast<double>(frames.size()));
@@ -132,10 +134,10 @@ Status decode(const DecodeOptions& options) {
   }
   if (!errors.empty()) {
     return fail(ErrorCode::corrupt,
-                fmt::format("{}: {} of {} frames are damaged, the {} sound ones are in {}; encode "
-                            "or fetch the damaged ones again",
-                            options.input.string(), errors.size(), count, frames.size(),
-                            options.folder.string()));
+                fmt::format("{}: {} of {} are damaged, the sound ones ({}) are in {}; encode or "
+                            "fetch the damaged ones again",
+                            options.input.string(), errors.size(), count_of(count, "frame"),
+                            frames.size(), options.folder.string()));
   }
   return check_complete(options.input, *reader);
 }

@@ -102,8 +102,8 @@ void report_text(const fs::path& output, const std::vector<Encoded>& frames,
     milliseconds += frame.encode_ms;
   }
   const auto count = static_cast<double>(frames.size());
-  fmt::print("{}: {} frames, {} points in, {} coded\n", output.string(), frames.size(),
-             sums.points_in(), sums.points_coded());
+  fmt::print("{}: {}, {} in, {} coded\n", output.string(), count_of(frames.size(), "frame"),
+             count_of(sums.points_in(), "point"), sums.points_coded());
   fmt::print("  not coded: {}\n", sums.losses());
   fmt::print("  {} bytes in frames, {} in the file; ratio {:.1f} (16 B/point, geometry only)\n",
              bytes, file_bytes, ratio(sums.points_in(), bytes));

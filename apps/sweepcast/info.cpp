@@ -71,14 +71,15 @@ ordered_json frame_json(const SweepEntry& entry, const FrameHeader& header) {
 std::string list(const std::map<std::string, std::size_t>& names) {
   std::string text;
   for (const auto& [key, count] : names) {
-    text += (text.empty() ? "" : ", ") + (key.empty() ? "(none)" : key);
+    text += (text.empty() ? "" : ", ") + (key.empty() ? "(none)" : printable(key));
   }
   return text;
 }
 
 void report_text(const InfoOptions& options, const SweepReader& reader, const Summary& summary) {
-  fmt::print("{}: {} frames, {} bytes{}\n", options.input.string(), reader.entries().size(),
-             reader.file_size(), reader.was_cut() ? "; no index, found by walking the frames" : "");
+  fmt::print("{}: {}, {} bytes{}\n", options.input.string(),
+             count_of(reader.entries().size(), "frame"), reader.file_size(),
+             reader.was_cut() ? "; no index, found by walking the frames" : "");
   if (summary.frames == 0) return;
   const auto count = static_cast<double>(summary.frames);
   fmt::print("  codec {}, sensor {}\n", list(summary.codecs), list(summary.sensors));
@@ -95,7 +96,8 @@ void report_text(const InfoOptions& options, const SweepReader& reader, const Su
 
 void print_frame(const SweepEntry& entry, const FrameHeader& header) {
   fmt::print("{:>8} {:>20} {:>9} {:>9} {:>9}  {}\n", header.sequence, header.stamp_ns,
-             header.counts.points_in, header.counts.points_coded, header.frame_size, entry.name);
+             header.counts.points_in, header.counts.points_coded, header.frame_size,
+             printable(entry.name));
 }
 
 Status info(const InfoOptions& options) {
@@ -139,9 +141,8 @@ Status info(const InfoOptions& options) {
     report_text(options, *reader, summary);
   }
   if (damaged == 0) return check_complete(options.input, *reader);
-  return fail(ErrorCode::corrupt, fmt::format("{}: {} frames are damaged; encode or fetch them "
-                                              "again",
-                                              options.input.string(), damaged));
+  return fail(ErrorCode::corrupt, fmt::format("{}: {} damaged; encode or fetch again",
+                                              options.input.string(), count_of(damaged, "frame")));
 }
 
 }  // namespace

@@ -128,7 +128,7 @@ void report(const VerifyOptions& options, const std::vector<Verified>& frames,
                 {"problems", problems}});
     return;
   }
-  fmt::print("{}: {} frames verified\n", options.input.string(), frames.size());
+  fmt::print("{}: {} verified\n", options.input.string(), count_of(frames.size(), "frame"));
   fmt::print("  original to nearest decoded point: max {:.3f} m, mean {:.4f} m, RMS {:.4f} m\n",
              errors.max, errors.mean(), errors.rms());
   fmt::print("  {} points in, {} kept; lost: {}\n", counts.points_in(), counts.points_coded(),
@@ -159,8 +159,9 @@ Status verify(const VerifyOptions& options) {
   }
   report(options, frames, problems);
   if (problems.empty()) return check_complete(options.input, *reader);
-  return fail(ErrorCode::corrupt, fmt::format("{}: {} of {} frames do not stand; see above",
-                                              options.input.string(), problems.size(), count));
+  return fail(ErrorCode::corrupt,
+              fmt::format("{}: {} of {} failed; see above", options.input.string(), problems.size(),
+                          count_of(count, "frame")));
 }
 
 }  // namespace
