@@ -195,16 +195,15 @@ void fit_lags(std::span<const BeamSamples> sweeps, int ticks_per_turn,
       for (std::size_t i = 0; i < own.size(); i += step) {
         int at = (own[i] - reach + ticks_per_turn) % ticks_per_turn;
         for (int lag = reach; lag >= -reach; --lag) {
-          score[static_cast<std::size_t>(lag + reach)] +=
-              std::min(fired[n][static_cast<std::size_t>(at)], 8.0F);
+          score[static_cast<std::size_t>(lag + reach)] += fired[n][static_cast<std::size_t>(at)];
           if (++at == ticks_per_turn) at = 0;
         }
       }
     }
     const double most = *std::max_element(score.begin(), score.end());
     for (int lag = 0; lag <= reach; ++lag) {
-      if (score[static_cast<std::size_t>(reach + lag)] >= 0.985 * most) return lag;
-      if (score[static_cast<std::size_t>(reach - lag)] >= 0.985 * most) return -lag;
+      if (score[static_cast<std::size_t>(reach + lag)] >= 0.998 * most) return lag;
+      if (score[static_cast<std::size_t>(reach - lag)] >= 0.998 * most) return -lag;
     }
     return 0;
   };

@@ -111,6 +111,10 @@ class BeamUnprojector {
   void unproject(const BeamImage& image, PointCloud& cloud);
 
  private:
+  void decode_row(const BeamImage& image, int k);
+  void add_residuals(const BeamImage& image, int k);
+  void redo_motion(const BeamImage& image, int k);
+
   SensorModel model_;
   std::vector<BeamGeometry> beams_;
   std::vector<double> sin_, cos_;  ///< of the firings' ticks

@@ -1,0 +1,451 @@
+#include "sensor/beam_grid.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/trig.hpp"
+#include "sensor/beam_columns.hpp"
+#include "sensor/beam_lines.hpp"
+#include "sensor/motion.hpp"
+
+namespace sweepcast {
+namespace {
+
+constexpr double kTurn = 2.0 * kPi;
+constexpr float kInverseTurn = static_cast<float>(1.0 / kTurn);
+constexpr std::size_t kBatch = 512;
+constexpr float kMaxRange = 2.0e5F;  // metres: 0.1 mm of it fit 32 bits
+
+// Nearest integer; the compiler makes one instruction of it, which std::lround is not.
+std::int32_t nearest(float value) {
+  return static_cast<std::int32_t>(value + (value < 0.0F ? -0.5F : 0.5F));
+}
+
+std::vector<BeamLine> lines_of(const std::vector<BeamGeometry>& beams) {
+  std::vector<BeamLine> lines;
+  for (const BeamGeometry& beam : beams) lines.push_back({beam.tan, beam.height_m, 0});
+  return lines;
+}
+
+// Turns by which a beam's lateral offset turns its points at a horizontal distance.
+double lateral_turns(const BeamGeometry& beam, double rho) {
+  const double q = beam.lateral_m / (rho > 1e-4 ? rho : 1.0);
+  return (q + q * q * q / 6.0) / kTurn;  // arc sine
+}
+
+// When a point was measured, turns from the motion's zero.
+double point_time(const Motion& motion, const SensorModel& model, const BeamGeometry& beam,
+                  int firing, int lag, double aside_turns) {
+  if (motion.clock == MotionClock::firing) {
+    return motion_time(firing, motion, model.ticks_per_turn);
+  }
+  return motion_time(firing + lag, motion, model.ticks_per_turn) +
+         beam.phase / model.ticks_per_turn + aside_turns;
+}
+
+// What projection needs of a beam, in floats, side by side.
+struct FloatBeam {
+  float tan, inverse_slant, height, lateral, phase;
+  std::int32_t lag;
+};
+
+}  // namespace
+
+void column_shifts(const SensorModel& model, std::span<const std::int32_t> firing_tick,
+                   std::vector<std::int32_t>& shift) {
+  shift.assign(model.beams.size(), 0);
+  if (firing_tick.size() < 2) return;
+  const std::int64_t columns = static_cast<std::int64_t>(firing_tick.size()) - 1;
+  const std::int64_t ticks = firing_tick.back() - firing_tick.front();
+  // Columns per tick times (lag + offset), rounded; the offset is in 1e-6 degree.
+  const std::int64_t turn = std::int64_t{360} * kAngleUnits;
+  const std::int64_t divisor = ticks * turn;
+  for (std::size_t k = 0; k < shift.size(); ++k) {
+    const Beam& beam = model.beams[k];
+    const std::int64_t along =
+        beam.lag * turn + std::int64_t{beam.azimuth_offset} * model.ticks_per_turn;
+    // Halved first: lag, turn and columns together may take 64 bits.
+    const std::int64_t scaled = along / 64 * columns;
+    const std::int64_t half = divisor / 128;
+    shift[k] = static_cast<std::int32_t>((scaled + (scaled < 0 ? -half : half)) / (divisor / 64));
+  }
+}
+
+struct BeamProjector::State {
+  // One point on its way to a cell.
+  struct Sample {
+    float rho, height_error;  // metres
+    float miss;               // ticks from the tick's centre
+    std::int32_t range;
+  };
+
+  explicit State(const SensorModel& sensor)
+      : model(sensor), geometry(beam_geometry(sensor)), table(lines_of(geometry)) {
+    for (std::size_t k = 0; k < geometry.size(); ++k) {
+      const BeamGeometry& g = geometry[k];
+      beams.push_back({static_cast<float>(g.tan), static_cast<float>(g.inverse_slant),
+                       static_cast<float>(g.height_m), static_cast<float>(g.lateral_m),
+                       static_cast<float>(g.phase), model.beams[k].lag});
+    }
+  }
+
+  void locate(std::size_t count, const BeamGridOptions& options);
+  void locate_batch(std::size_t begin, std::size_t end, float max_miss);
+  void undo_motion(const Motion& motion);
+  [[nodiscard]] double time_of(const std::array<double, 3>& p, const Motion& motion) const;
+  void drop_mistimed(const Motion& motion);
+  void fill(const BeamGridOptions& options, BeamImage& image);
+  [[nodiscard]] bool takes(std::size_t i, const BeamImage& image, std::size_t cell) const;
+  void bound_errors(double max_error, BeamImage& image);
+  void residuals_of(std::size_t cell, std::size_t i, std::int32_t firing, BeamImage& image) const;
+  [[nodiscard]] std::uint32_t index(std::size_t i) const {
+    return subset.empty() ? static_cast<std::uint32_t>(i) : subset[i];
+  }
+
+  SensorModel model;
+  std::vector<BeamGeometry> geometry;
+  std::vector<FloatBeam> beams;
+  LineTable table;
+  ColumnFinder columns;
+
+  std::span<const std::uint32_t> subset;
+  std::vector<float> x, y, z;
+  std::vector<float> times;  // of deskewed points
+  std::vector<Sample> samples;
+  std::vector<FiringPlace> places;
+  std::vector<ExtraReason> reasons;      // of points without a place
+  std::vector<std::uint32_t> misfits;    // cells beyond the bound
+  std::vector<std::uint32_t> sample_of;  // per cell: index into samples
+};
+
+// Beam, tick and range of points [begin, end).
+void BeamProjector::State::locate_batch(std::size_t begin, std::size_t end, float max_miss) {
+  std::array<float, kBatch> rhos;
+  std::array<float, kBatch> turns;
+  const auto ticks = static_cast<float>(model.ticks_per_turn);
+  const std::size_t count = end - begin;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float px = x[begin + i];
+    const float py = y[begin + i];
+    rhos[i] = std::sqrt(px * px + py * py);
+    turns[i] = arc_tangent_fast(py, px) * kInverseTurn;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const float rho = rhos[i];
+    const float pz = z[begin + i];
+    FiringPlace& place = places[begin + i];
+    place.tick = -1;
+    if (!(rho < kMaxRange && pz < kMaxRange && pz > -kMaxRange)) {
+      const bool finite = std::isfinite(rho) && std::isfinite(pz);
+      reasons[begin + i] = finite ? ExtraReason::stray : ExtraReason::not_finite;
+      continue;
+    }
+    if (rho < 1e-4F) {
+      reasons[begin + i] = pz == 0.0F ? ExtraReason::zero_range : ExtraReason::stray;
+      continue;
+    }
+    const std::size_t k = table.nearest(rho, pz);
+    const FloatBeam& beam = beams[k];
+    const float above = pz - beam.height;
+    const float error = above - rho * beam.tan;
+    const float along = (rho + above * beam.tan) * beam.inverse_slant;
+    const std::int32_t range = nearest(along * kRangeUnits);
+    const float q = beam.lateral / rho;
+    if (std::abs(error) > max_miss || range <= 0 || range > (1 << 30) || std::abs(q) > 0.5F) {
+      reasons[begin + i] = ExtraReason::stray;
+      continue;
+    }
+    const float aside = (q + q * q * q * (1.0F / 6.0F)) * kInverseTurn;  // arc sine
+    const float at = (turns[i] - aside) * ticks - beam.phase;
+    const std::int32_t tick = nearest(at);
+    std::int32_t firing = (tick - beam.lag) % model.ticks_per_turn;
+    if (firing < 0) firing += model.ticks_per_turn;
+    place = {firing, static_cast<std::uint16_t>(k)};
+    samples[begin + i] = {rho, error, at - static_cast<float>(tick), range};
+  }
+}
+
+// From deskewed points to the sensor's own, in place. The time is that of the sensor's own azimuth:
+// found by going back and forth.
+void BeamProjector::State::undo_motion(const Motion& motion) {
+  const Twist twist(motion);
+  times.assign(x.size(), 0.0F);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const std::array<double, 3> q{x[i], y[i], z[i]};
+    const double size = std::abs(q[0]) + std::abs(q[1]) + std::abs(q[2]);
+    if (!(size > 1e-4 && size < kMaxRange)) continue;
+    std::array<double, 3> p = q;
+    double time = 0.0;
+    for (int round = 0; round < 4; ++round) {
+      time = time_of(p, motion);
+      p = twist.undo(q, time);
+    }
+    times[i] = static_cast<float>(time);
+    x[i] = static_cast<float>(p[0]);
+    y[i] = static_cast<float>(p[1]);
+    z[i] = static_cast<float>(p[2]);
+  }
+}
+
+// When the sensor measured its point p.
+double BeamProjector::State::time_of(const std::array<double, 3>& p, const Motion& motion) const {
+  const double rho = std::sqrt(p[0] * p[0] + p[1] * p[1]);
+  if (rho < 1e-4) return 0.0;
+  const std::size_t k = table.nearest(static_cast<float>(rho), static_cast<float>(p[2]));
+  const double aside = lateral_turns(geometry[k], rho);
+  const double at =
+      (arc_tangent(p[1], p[0]) / kTurn - aside) * model.ticks_per_turn - geometry[k].phase;
+  const int firing = static_cast<int>(std::floor(at + 0.5)) - beams[k].lag;
+  return point_time(motion, model, geometry[k], firing, beams[k].lag, aside);
+}
+
+void BeamProjector::State::locate(std::size_t count, const BeamGridOptions& options) {
+  if (options.motion) undo_motion(*options.motion);
+  places.resize(count);
+  samples.resize(count);
+  reasons.resize(count);
+  for (std::size_t begin = 0; begin < count; begin += kBatch) {
+    locate_batch(begin, std::min(begin + kBatch, count),
+                 static_cast<float>(options.max_height_residual_m));
+  }
+  if (options.motion) drop_mistimed(*options.motion);
+}
+
+// Where the sweep begins and ends, a point's time may have settled on one side and its tick on the
+// other: the decoder would move it by the whole sweep's motion.
+void BeamProjector::State::drop_mistimed(const Motion& motion) {
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (places[i].tick < 0) continue;
+    const BeamGeometry& g = geometry[places[i].beam];
+    const double time = point_time(motion, model, g, places[i].tick, beams[places[i].beam].lag,
+                                   lateral_turns(g, samples[i].rho));
+    if (std::abs(time - times[i]) < 0.25) continue;
+    places[i].tick = -1;
+    reasons[i] = ExtraReason::stray;
+  }
+}
+
+// Whether point i is nearer to the cell's azimuth than the point that has it.
+bool BeamProjector::State::takes(std::size_t i, const BeamImage& image, std::size_t cell) const {
+  const std::int32_t firing = image.firing_tick[cell % static_cast<std::size_t>(image.cols)];
+  const std::size_t other = sample_of[cell];
+  const auto miss = [&](std::size_t n) {
+    return std::abs(static_cast<float>(places[n].tick - firing) + samples[n].miss);
+  };
+  return miss(i) < miss(other);
+}
+
+void BeamProjector::State::fill(const BeamGridOptions& options, BeamImage& image) {
+  const int jitter = options.max_error_m > 0.0 ? model.jitter : 0;
+  const auto column_of = columns.find(places, model.ticks_per_turn, static_cast<int>(beams.size()),
+                                      jitter, image.firing_tick);
+  image.rows = static_cast<int>(beams.size());
+  image.cols = static_cast<int>(image.firing_tick.size());
+  image.range.assign(image.cells(), 0);
+  image.point.assign(image.cells(), kNoPoint);
+  image.azimuth_residual.clear();
+  image.height_residual.clear();
+  image.azimuth_divisor = 1;
+  image.height_step = 0;
+  image.motion = options.motion;
+  image.extras.clear();
+  sample_of.resize(image.cells());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const FiringPlace place = places[i];
+    if (place.tick < 0) {
+      image.extras.push_back({index(i), reasons[i]});
+      continue;
+    }
+    const std::size_t cell =
+        place.beam * static_cast<std::size_t>(image.cols) +
+        static_cast<std::size_t>(column_of[static_cast<std::size_t>(place.tick)]);
+    if (image.range[cell] != 0) {
+      const bool wins = takes(i, image, cell);
+      image.extras.push_back({wins ? image.point[cell] : index(i), ExtraReason::collision});
+      if (!wins) continue;
+    }
+    image.range[cell] = samples[i].range;
+    image.point[cell] = index(i);
+    sample_of[cell] = static_cast<std::uint32_t>(i);
+  }
+  if (options.max_error_m > 0.0) bound_errors(options.max_error_m, image);
+  std::sort(image.extras.begin(), image.extras.end(),
+            [](const ExtraPoint& a, const ExtraPoint& b) { return a.point < b.point; });
+}
+
+// Finds the cells beyond the bound. A few become extras; more get residuals.
+void BeamProjector::State::bound_errors(double max_error, BeamImage& image) {
+  misfits.clear();
+  const double tick = kTurn / model.ticks_per_turn;
+  float farthest = 0.0F;
+  for (std::size_t cell = 0; cell < image.cells(); ++cell) {
+    if (image.range[cell] == 0) continue;
+    const std::size_t i = sample_of[cell];
+    const Sample& s = samples[i];
+    const std::int32_t firing = image.firing_tick[cell % static_cast<std::size_t>(image.cols)];
+    const double ticks = places[i].tick - firing + static_cast<double>(s.miss);
+    const double aside = ticks * tick * s.rho;
+    const double above = s.height_error * geometry[places[i].beam].inverse_slant;
+    if (aside * aside + above * above <= max_error * max_error) continue;
+    misfits.push_back(static_cast<std::uint32_t>(cell));
+    farthest = std::max(farthest, s.rho);
+  }
+  if (misfits.size() * 1000 <= places.size()) {
+    for (const std::uint32_t cell : misfits) {
+      image.extras.push_back({image.point[cell], ExtraReason::misfit});
+      image.range[cell] = 0;
+      image.point[cell] = kNoPoint;
+    }
+    return;
+  }
+  // Steps whose halves leave 0.7 of the bound at most, at the farthest point.
+  image.height_step = std::max(1, static_cast<std::int32_t>(max_error * kLengthUnits));
+  const double divisor = std::ceil(tick * farthest / max_error);
+  image.azimuth_divisor = static_cast<std::int32_t>(std::clamp(divisor, 1.0, 4096.0));
+  image.azimuth_residual.assign(image.cells(), 0);
+  image.height_residual.assign(image.cells(), 0);
+  for (const std::uint32_t cell : misfits) {
+    const std::size_t i = sample_of[cell];
+    residuals_of(cell, i, image.firing_tick[cell % static_cast<std::size_t>(image.cols)], image);
+  }
+}
+
+// With a height residual the range is such that rho is exact; z is then off by half a step.
+void BeamProjector::State::residuals_of(std::size_t cell, std::size_t i, std::int32_t firing,
+                                        BeamImage& image) const {
+  const Sample& s = samples[i];
+  const BeamGeometry& g = geometry[places[i].beam];
+  const double ticks = places[i].tick - firing + static_cast<double>(s.miss);
+  image.azimuth_residual[cell] =
+      static_cast<std::int32_t>(std::lround(ticks * image.azimuth_divisor));
+  const double steps = static_cast<double>(s.height_error) * kLengthUnits / image.height_step;
+  image.height_residual[cell] = static_cast<std::int32_t>(std::lround(steps));
+  if (image.height_residual[cell] == 0) return;
+  image.range[cell] =
+      std::max(1, static_cast<std::int32_t>(std::lround(s.rho * g.slant * kRangeUnits)));
+}
+
+BeamProjector::BeamProjector(const SensorModel& model) : state_(std::make_unique<State>(model)) {}
+BeamProjector::BeamProjector(BeamProjector&&) noexcept = default;
+BeamProjector& BeamProjector::operator=(BeamProjector&&) noexcept = default;
+BeamProjector::~BeamProjector() = default;
+
+void BeamProjector::project(const CloudView& cloud, const BeamGridOptions& options,
+                            BeamImage& image) {
+  State& s = *state_;
+  s.subset = {};
+  for (auto* column : {&s.x, &s.y, &s.z}) column->resize(cloud.size);
+  cloud.x.read(0, s.x);
+  cloud.y.read(0, s.y);
+  cloud.z.read(0, s.z);
+  s.locate(cloud.size, options);
+  s.fill(options, image);
+}
+
+void BeamProjector::project(const CloudView& cloud, std::span<const std::uint32_t> points,
+                            const BeamGridOptions& options, BeamImage& image) {
+  State& s = *state_;
+  for (auto* column : {&s.x, &s.y, &s.z}) column->resize(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    s.x[i] = static_cast<float>(cloud.x.at(points[i]));
+    s.y[i] = static_cast<float>(cloud.y.at(points[i]));
+    s.z[i] = static_cast<float>(cloud.z.at(points[i]));
+  }
+  s.locate(points.size(), options);
+  s.subset = points;
+  s.fill(options, image);
+  s.subset = {};
+}
+
+BeamUnprojector::BeamUnprojector(const SensorModel& model)
+    : model_(model), beams_(beam_geometry(model)) {}
+
+void BeamUnprojector::unproject(const BeamImage& image, PointCloud& cloud) {
+  const auto cols = static_cast<std::size_t>(image.cols);
+  sin_.resize(cols);
+  cos_.resize(cols);
+  for (std::size_t j = 0; j < cols; ++j) {
+    const SinCos at = sin_cos(kTurn * image.firing_tick[j] / model_.ticks_per_turn);
+    sin_[j] = at.sin;
+    cos_[j] = at.cos;
+  }
+  const auto cells = std::count_if(image.range.begin(), image.range.end(),
+                                   [](std::int32_t range) { return range != 0; });
+  cloud.clear();
+  cloud.resize_xyz(static_cast<std::size_t>(cells));
+  for (auto* column : {&x_, &y_, &z_}) column->resize(cols);
+  std::size_t count = 0;
+  for (int k = 0; k < image.rows; ++k) {
+    const std::int32_t* range = image.range.data() + static_cast<std::size_t>(k) * cols;
+    decode_row(image, k);
+    for (std::size_t j = 0; j < cols; ++j) {
+      if (range[j] == 0) continue;
+      cloud.x[count] = x_[j];
+      cloud.y[count] = y_[j];
+      cloud.z[count] = z_[j];
+      ++count;
+    }
+  }
+}
+
+// All cells of a row, empty ones too: no branches, so that it vectorises.
+void BeamUnprojector::decode_row(const BeamImage& image, int k) {
+  const auto cols = static_cast<std::size_t>(image.cols);
+  const std::size_t first = static_cast<std::size_t>(k) * cols;
+  const std::int32_t* range = image.range.data() + first;
+  const BeamGeometry& beam = beams_[static_cast<std::size_t>(k)];
+  const SinCos turn = sin_cos(beam.azimuth);
+  const double rho_per_range = beam.inverse_slant / kRangeUnits;
+  for (std::size_t j = 0; j < cols; ++j) {
+    const double rho = range[j] * rho_per_range;
+    // Sine of the angle by which the lateral offset turns the point; at most 1.
+    const double ratio = beam.lateral_m / (rho > 1e-4 ? rho : 1.0);
+    const double aside = ratio > 1.0 ? 1.0 : (ratio < -1.0 ? -1.0 : ratio);
+    const double ahead = std::sqrt(1.0 - aside * aside);
+    const double c = cos_[j] * turn.cos - sin_[j] * turn.sin;
+    const double s = sin_[j] * turn.cos + cos_[j] * turn.sin;
+    x_[j] = static_cast<float>(rho * (c * ahead - s * aside));
+    y_[j] = static_cast<float>(rho * (s * ahead + c * aside));
+    z_[j] = static_cast<float>(rho * beam.tan + beam.height_m);
+  }
+  if (!image.azimuth_residual.empty()) add_residuals(image, k);
+  if (image.motion) redo_motion(image, k);
+}
+
+void BeamUnprojector::add_residuals(const BeamImage& image, int k) {
+  const auto cols = static_cast<std::size_t>(image.cols);
+  const std::size_t first = static_cast<std::size_t>(k) * cols;
+  const double unit = kTurn / (static_cast<double>(model_.ticks_per_turn) * image.azimuth_divisor);
+  const double step = static_cast<double>(image.height_step) / kLengthUnits;
+  for (std::size_t j = 0; j < cols; ++j) {
+    if (image.range[first + j] == 0) continue;
+    if (const std::int32_t residual = image.azimuth_residual[first + j]; residual != 0) {
+      const SinCos turn = sin_cos(residual * unit);
+      const double x = x_[j];
+      const double y = y_[j];
+      x_[j] = static_cast<float>(x * turn.cos - y * turn.sin);
+      y_[j] = static_cast<float>(y * turn.cos + x * turn.sin);
+    }
+    z_[j] = static_cast<float>(z_[j] + image.height_residual[first + j] * step);
+  }
+}
+
+void BeamUnprojector::redo_motion(const BeamImage& image, int k) {
+  const auto cols = static_cast<std::size_t>(image.cols);
+  const std::int32_t* range = image.range.data() + static_cast<std::size_t>(k) * cols;
+  const BeamGeometry& beam = beams_[static_cast<std::size_t>(k)];
+  const std::int32_t lag = model_.beams[static_cast<std::size_t>(k)].lag;
+  const Twist twist(*image.motion);
+  for (std::size_t j = 0; j < cols; ++j) {
+    if (range[j] == 0) continue;
+    const double aside = lateral_turns(beam, range[j] * beam.inverse_slant / kRangeUnits);
+    const double time = point_time(*image.motion, model_, beam, image.firing_tick[j], lag, aside);
+    const auto q = twist.redo({x_[j], y_[j], z_[j]}, time);
+    x_[j] = static_cast<float>(q[0]);
+    y_[j] = static_cast<float>(q[1]);
+    z_[j] = static_cast<float>(q[2]);
+  }
+}
+
+}  // namespace sweepcast
