@@ -17,6 +17,7 @@ endif()
 if(SWEEPCAST_FUZZ)
   # The fuzzer must see which way its input takes through the libraries, not only the target.
   target_compile_options(sweepcast_build INTERFACE -fsanitize=fuzzer-no-link)
+  target_compile_definitions(sweepcast_build INTERFACE _GLIBCXX_ASSERTIONS)
 endif()
 
 # sweepcast_target(NAME): the settings above, and src/ as the root of internal includes.

@@ -95,7 +95,7 @@ Status resolve_points(const PcdEntries& entries, PcdHeader& header) {
                 "the header has neither WIDTH nor POINTS; write the file again");
   }
   const std::uint64_t height = entries.height.value_or(1);
-  const std::uint64_t width = entries.width.value_or(*entries.points);
+  const std::uint64_t width = entries.width ? *entries.width : *entries.points;
   if (height > kMaxPoints || width > kMaxPoints) {
     return fail(ErrorCode::limit,
                 "announces more than " + std::to_string(kMaxPoints) + " points; split the cloud");

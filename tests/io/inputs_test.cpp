@@ -1,6 +1,8 @@
 // The sweeps that a command line names.
 #include "common/inputs.hpp"
 
+#include <algorithm>
+
 #include "io/support.hpp"
 
 namespace sweepcast::app {
@@ -11,24 +13,26 @@ using test::status_of;
 using test::TemporaryFolder;
 using test::write_text;
 
+Result<std::vector<std::filesystem::path>> collect(const TemporaryFolder& folder,
+                                                   std::vector<std::string> inputs) {
+  for (std::string& input : inputs) input = (folder / input).string();
+  return collect_clouds(inputs);
+}
+
 /// Names of the clouds, below the folder; or the error.
 std::vector<std::string> collected(const TemporaryFolder& folder,
                                    const std::vector<std::string>& inputs) {
-  std::vector<std::string> paths;
-  for (const auto& input : inputs) paths.push_back((folder / input).string());
-  const auto clouds = collect_clouds(paths);
+  const auto clouds = collect(folder, inputs);
   if (!clouds) return {clouds.error().message};
-  std::vector<std::string> names;
-  for (const auto& cloud : *clouds) {
-    names.push_back(cloud.lexically_relative(folder.path()).generic_string());
-  }
+  std::vector<std::string> names(clouds->size());
+  std::transform(clouds->begin(), clouds->end(), names.begin(), [&](const auto& cloud) {
+    return cloud.lexically_relative(folder.path()).generic_string();
+  });
   return names;
 }
 
 Status failure(const TemporaryFolder& folder, const std::vector<std::string>& inputs) {
-  std::vector<std::string> paths;
-  for (const auto& input : inputs) paths.push_back((folder / input).string());
-  return status_of(collect_clouds(paths));
+  return status_of(collect(folder, inputs));
 }
 
 using Names = std::vector<std::string>;

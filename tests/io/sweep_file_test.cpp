@@ -74,7 +74,7 @@ void xor_byte(Bytes& bytes, std::size_t at, unsigned with) {
 
 TEST(SweepFile, GivesBackWhatWasWritten) {
   for (const Mode mode : {Mode::convert, Mode::record}) {
-    for (const std::size_t count : {0, 1, 12}) {
+    for (const std::size_t count : {0U, 1U, 12U}) {
       TemporaryFolder folder;
       write_frames(folder / "a.sweep", mode, 0, count);
       expect_frames(folder / "a.sweep", count, false);
