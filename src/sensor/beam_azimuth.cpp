@@ -156,7 +156,7 @@ std::vector<BeamAzimuth> fit_azimuths(std::span<const BeamSamples> sweeps, std::
 
 void fit_lags(std::span<const BeamSamples> sweeps, int ticks_per_turn,
               std::span<BeamAzimuth> beams) {
-  constexpr double kMaxLagTurns = 16.0 / 360.0;
+  constexpr double kMaxLagTurns = 25.0 / 360.0;
   const int reach = static_cast<int>(ticks_per_turn * kMaxLagTurns);
   const auto turn = static_cast<std::size_t>(ticks_per_turn);
   // Occupied ticks of each beam in each of the first sweeps.
@@ -202,8 +202,8 @@ void fit_lags(std::span<const BeamSamples> sweeps, int ticks_per_turn,
     }
     const double most = *std::max_element(score.begin(), score.end());
     for (int lag = 0; lag <= reach; ++lag) {
-      if (score[static_cast<std::size_t>(reach + lag)] >= 0.998 * most) return lag;
-      if (score[static_cast<std::size_t>(reach - lag)] >= 0.998 * most) return -lag;
+      if (score[static_cast<std::size_t>(reach + lag)] >= most) return lag;
+      if (score[static_cast<std::size_t>(reach - lag)] >= most) return -lag;
     }
     return 0;
   };
