@@ -1,1 +1,2 @@
 # Targets for src/codec.
+sweepcast_fuzz(frame)
