@@ -110,4 +110,9 @@ struct SensorEstimateOptions {
 [[nodiscard]] Result<SensorEstimate> estimate_sensor_model(
     std::span<const CloudView> sweeps, const SensorEstimateOptions& options = {});
 
+/// Finds the twist that a sweep was deskewed by, the sensor's model known. `guess`: the motion of
+/// the sweep before, where there is one; null searches all.
+[[nodiscard]] Motion estimate_motion(const CloudView& cloud, const SensorModel& model,
+                                     const Motion* guess);
+
 }  // namespace sweepcast

@@ -119,6 +119,10 @@ double sideways_error(std::span<const Sample> samples, double ticks, const BeamA
 
 }  // namespace
 
+std::span<const int> encoder_ticks() {
+  return kEncoders;
+}
+
 int find_ticks(std::span<const BeamSamples> sweeps, std::size_t beams) {
   auto samples = by_beam(sweeps, beams);
   std::sort(samples.begin(), samples.end(),

@@ -28,6 +28,9 @@ struct BeamAzimuth {
   double coherence = 0.0;  ///< 1: every azimuth a whole tick; about 0: anywhere
 };
 
+/// The numbers of ticks that encoders have, rising.
+[[nodiscard]] std::span<const int> encoder_ticks();
+
 /// The encoder's ticks in a turn: of the numbers that encoders have, the smallest whose ticks the
 /// azimuths return to as exactly as to any. 0 where they return to none.
 [[nodiscard]] int find_ticks(std::span<const BeamSamples> sweeps, std::size_t beams);

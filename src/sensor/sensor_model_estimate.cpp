@@ -8,6 +8,7 @@
 #include "sensor/beam_columns.hpp"
 #include "sensor/beam_geometry.hpp"
 #include "sensor/beam_lines.hpp"
+#include "sensor/motion_fit.hpp"
 #include "sweepcast/sensor_model.hpp"
 
 namespace sweepcast {
@@ -244,20 +245,11 @@ int find_jitter(const BeamSamples& sweep, const SensorModel& model) {
   return best;
 }
 
-}  // namespace
-
-Result<SensorEstimate> estimate_sensor_model(std::span<const CloudView> sweeps,
-                                             const SensorEstimateOptions& options) {
-  if (sweeps.empty()) {
-    return fail(ErrorCode::invalid_argument, "no sweep to estimate a sensor model from");
-  }
+// The model of sweeps in the sensor's own frame.
+Result<SensorEstimate> estimate_still(std::span<const CloudView> sweeps, bool use_ring,
+                                      const SensorEstimateOptions& options) {
   Samples samples;
-  const bool use_ring =
-      options.use_ring && std::all_of(sweeps.begin(), sweeps.end(),
-                                      [](const CloudView& sweep) { return sweep.ring.present(); });
-  for (const CloudView& sweep : chosen(sweeps, options.max_points)) {
-    add_sweep(sweep, use_ring, samples);
-  }
+  for (const CloudView& sweep : sweeps) add_sweep(sweep, use_ring, samples);
   if (samples.rho.size() < kMinPoints) {
     return fail(ErrorCode::invalid_argument,
                 std::to_string(samples.rho.size()) +
@@ -282,6 +274,62 @@ Result<SensorEstimate> estimate_sensor_model(std::span<const CloudView> sweeps,
   if (coherent) estimate.model.jitter = find_jitter(samples.sweeps.front(), estimate.model);
   if (const Status sound = check(estimate.model); !sound) return tl::unexpected(sound.error());
   estimate.residuals = residuals_of(samples, estimate.model);
+  return estimate;
+}
+
+// The same of deskewed sweeps: the twist of the first straightens the beams, those of the others
+// follow from the beams, and all sweeps undone give the model.
+Result<SensorEstimate> estimate_deskewed(std::span<const CloudView> sweeps,
+                                         SensorEstimateOptions options) {
+  MotionFitter fitter(sweeps.front(), 1);
+  TwistVector twist = fitter.bootstrap(options.max_beams);
+  if (options.ticks_per_turn == 0) options.ticks_per_turn = fitter.find_ticks();
+  if (options.ticks_per_turn != 0) fitter.find_yaw(options.ticks_per_turn, nullptr, twist);
+  std::vector<Motion> motions{quantised_motion(twist)};
+  std::vector<PointCloud> own(sweeps.size());
+  undo_motion(sweeps.front(), motions.front(), own.front());
+  std::vector<CloudView> views{own.front()};
+  auto estimate = estimate_still(views, false, options);
+  if (!estimate) return estimate;
+  motions.clear();
+  views.clear();
+  for (std::size_t n = 0; n < sweeps.size(); ++n) {
+    const Motion guess = n == 0 ? quantised_motion(twist) : motions.back();
+    motions.push_back(estimate_motion(sweeps[n], estimate->model, &guess));
+    undo_motion(sweeps[n], motions[n], own[n]);
+    views.emplace_back(own[n]);
+  }
+  estimate = estimate_still(views, false, options);
+  if (estimate) estimate->motions = std::move(motions);
+  return estimate;
+}
+
+}  // namespace
+
+Result<SensorEstimate> estimate_sensor_model(std::span<const CloudView> sweeps,
+                                             const SensorEstimateOptions& options) {
+  // Beams whose points lie this much of the way to the next are crisp.
+  constexpr double kCrisp = 0.06;
+  constexpr double kBlurred = 0.3;
+  if (sweeps.empty()) {
+    return fail(ErrorCode::invalid_argument, "no sweep to estimate a sensor model from");
+  }
+  const std::vector<CloudView> some = chosen(sweeps, options.max_points);
+  const bool use_ring =
+      options.use_ring && std::all_of(some.begin(), some.end(),
+                                      [](const CloudView& sweep) { return sweep.ring.present(); });
+  auto estimate = estimate_still(some, use_ring, options);
+  const auto blur = [](const Result<SensorEstimate>& e) { return e ? e->residuals.blur : 1.0; };
+  if (options.undo_motion && blur(estimate) > kCrisp) {
+    auto straight = estimate_deskewed(some, options);
+    if (blur(straight) < 0.5 * blur(estimate)) estimate = std::move(straight);
+  }
+  if (estimate && estimate->residuals.blur > kBlurred) {
+    const auto percent = std::lround(100.0 * estimate->residuals.share_5cm);
+    return fail(ErrorCode::unsupported,
+                "these points do not lie on the beams of a spinning LiDAR: the best model has " +
+                    std::to_string(percent) + " % of them within 5 cm, no better than chance");
+  }
   return estimate;
 }
 
