@@ -22,15 +22,16 @@ std::size_t allocations = 0;  // one thread
 }  // namespace
 
 #ifdef SWEEPCAST_MALLOC_IS_TAKEN
-void* operator new(std::size_t size) {
+// Not inlined: compilers would see malloc's memory in operator delete, and warn.
+[[gnu::noinline]] void* operator new(std::size_t size) {
   ++allocations;
   if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
   throw std::bad_alloc();
 }
-void operator delete(void* memory) noexcept {
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
   std::free(memory);
 }
-void operator delete(void* memory, std::size_t) noexcept {
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
   std::free(memory);
 }
 #else
