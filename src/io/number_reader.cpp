@@ -7,14 +7,30 @@
 namespace sweepcast {
 namespace {
 
-/// `size` bytes as an unsigned integer.
-std::uint64_t load_bits(std::span<const std::byte> bytes, NumberCoding coding) {
-  std::uint64_t bits = 0;
-  for (std::size_t i = 0; i < bytes.size(); ++i) {
-    const std::size_t from = coding == NumberCoding::big_endian ? i : bytes.size() - 1 - i;
-    bits = (bits << 8) | static_cast<std::uint64_t>(bytes[from]);
+/// Bytes as an unsigned integer of a width that the compiler knows: it makes one load of the loop.
+template <class Bits>
+std::uint64_t load(const std::byte* bytes, bool big_endian) {
+  Bits little = 0;
+  Bits big = 0;
+  for (std::size_t i = 0; i < sizeof(Bits); ++i) {
+    little = static_cast<Bits>(little | static_cast<Bits>(bytes[i]) << (8 * i));
+    big = static_cast<Bits>(big | static_cast<Bits>(bytes[sizeof(Bits) - 1 - i]) << (8 * i));
   }
-  return bits;
+  return big_endian ? big : little;
+}
+
+std::uint64_t load_bits(std::span<const std::byte> bytes, NumberCoding coding) {
+  const bool big_endian = coding == NumberCoding::big_endian;
+  switch (bytes.size()) {
+    case 1:
+      return load<std::uint8_t>(bytes.data(), big_endian);
+    case 2:
+      return load<std::uint16_t>(bytes.data(), big_endian);
+    case 4:
+      return load<std::uint32_t>(bytes.data(), big_endian);
+    default:
+      return load<std::uint64_t>(bytes.data(), big_endian);
+  }
 }
 
 /// Two's complement of the type's width.
