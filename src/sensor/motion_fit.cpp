@@ -213,7 +213,7 @@ TwistVector MotionFitter::height_step(std::span<const BeamLine> lines, bool line
   return twist;
 }
 
-TwistVector MotionFitter::bootstrap(int max_beams) {
+std::optional<TwistVector> MotionFitter::bootstrap(int max_beams) {
   TwistVector twist{};
   undo(twist);
   std::vector<float> rho, z;
@@ -223,7 +223,7 @@ TwistVector MotionFitter::bootstrap(int max_beams) {
     z.push_back(z_[i]);
   }
   lines_ = find_beam_lines({rho, z}, {max_beams, 0.004});
-  if (lines_.empty()) return twist;
+  if (lines_.empty()) return std::nullopt;
   for (const double degrees : {30.0, 45.0, 65.0, 90.0, 120.0, 150.0, 181.0}) {
     for (const double scale : {0.03, 0.015, 0.01}) {
       assign(lines_);
@@ -233,8 +233,10 @@ TwistVector MotionFitter::bootstrap(int max_beams) {
     }
   }
   for (const double scale : {0.01, 0.005, 0.003, 0.002, 0.002, 0.002}) {
-    if (scale == 0.005 || scale == 0.003)
+    if (scale == 0.005 || scale == 0.003) {
       lines_ = find_beam_lines({rho_, z_}, {max_beams, scale / 2.0});
+      if (lines_.empty()) return std::nullopt;
+    }
     assign(lines_);
     refine_lines({rho_, z_}, beam_, scale, lines_);
     twist = height_step(lines_, true, 1.0, scale, twist);

@@ -25,8 +25,9 @@ class MotionFitter {
   MotionFitter(const CloudView& cloud, std::size_t stride);
 
   /// With nothing known: from the beams in front, where hardly any time has passed, outwards.
-  /// Returns the twist but for its turn about z, which heights do not show.
-  [[nodiscard]] TwistVector bootstrap(int max_beams);
+  /// Returns the twist but for its turn about z, which heights do not show;
+  /// none where there are no beams.
+  [[nodiscard]] std::optional<TwistVector> bootstrap(int max_beams);
 
   /// The encoder's ticks, from the steps between neighbouring points of a beam, which the motion
   /// hardly changes; 0 where there are none. After `bootstrap`.

@@ -282,7 +282,11 @@ Result<SensorEstimate> estimate_still(std::span<const CloudView> sweeps, bool us
 Result<SensorEstimate> estimate_deskewed(std::span<const CloudView> sweeps,
                                          SensorEstimateOptions options) {
   MotionFitter fitter(sweeps.front(), 1);
-  TwistVector twist = fitter.bootstrap(options.max_beams);
+  const auto straightened = fitter.bootstrap(options.max_beams);
+  if (!straightened) {
+    return fail(ErrorCode::unsupported, "no beams of a spinning LiDAR in these points");
+  }
+  TwistVector twist = *straightened;
   if (options.ticks_per_turn == 0) options.ticks_per_turn = fitter.find_ticks();
   if (options.ticks_per_turn != 0) fitter.find_yaw(options.ticks_per_turn, nullptr, twist);
   std::vector<Motion> motions{quantised_motion(twist)};
@@ -302,6 +306,16 @@ Result<SensorEstimate> estimate_deskewed(std::span<const CloudView> sweeps,
   estimate = estimate_still(views, false, options);
   if (estimate) estimate->motions = std::move(motions);
   return estimate;
+}
+
+// The motion of every sweep, those that were passed over too, by the final model.
+void fill_motions(std::span<const CloudView> sweeps, SensorEstimate& estimate) {
+  Motion guess = estimate.motions.front();
+  estimate.motions.clear();
+  for (const CloudView& sweep : sweeps) {
+    guess = estimate_motion(sweep, estimate.model, &guess);
+    estimate.motions.push_back(guess);
+  }
 }
 
 }  // namespace
@@ -328,8 +342,10 @@ Result<SensorEstimate> estimate_sensor_model(std::span<const CloudView> sweeps,
     const auto percent = std::lround(100.0 * estimate->residuals.share_5cm);
     return fail(ErrorCode::unsupported,
                 "these points do not lie on the beams of a spinning LiDAR: the best model has " +
-                    std::to_string(percent) + " % of them within 5 cm, no better than chance");
+                    std::to_string(percent) +
+                    " % of them within 5 cm, and its beams are hardly crisper than chance");
   }
+  if (estimate && !estimate->motions.empty()) fill_motions(sweeps, *estimate);
   return estimate;
 }
 
