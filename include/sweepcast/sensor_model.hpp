@@ -53,20 +53,15 @@ inline constexpr std::int32_t kMaxTicks = 1 << 20;
 /// most a turn. Error: invalid_argument, with the number at fault.
 [[nodiscard]] Status check(const SensorModel& model);
 
-/// How points are told their time within a sweep, from -1/2 to 1/2 of a turn.
-enum class MotionClock : std::uint8_t {
-  azimuth,  ///< by the point's own tick: `atan2(y, x)` but for the beam's offsets; 0 is forward
-  firing,   ///< by the firing's tick: a column has one time
-};
-
-/// A constant twist that a deskewed sweep was moved by. The sensor's own point p, at time s,
-/// relates to the deskewed one q by  p = R(s * rotation) q + s * translation, where R turns about
-/// the vector `rotation` by its length. All six numbers are for a whole turn.
+/// A constant twist that a deskewed sweep was moved by. The sensor's own point p relates to the
+/// deskewed one q by  p = R(s * rotation) q + s * translation, where R turns about the vector
+/// `rotation` by its length. The time s is in turns, from -1/2 to 1/2, and runs with the azimuth
+/// of p: s = (t - zero_tick) / ticks_per_turn, t the tick at which p was measured, and the
+/// beam's own offsets added. All six numbers are for a whole turn.
 struct Motion {
   std::array<std::int32_t, 3> translation{};  ///< 10 um
   std::array<std::int32_t, 3> rotation{};     ///< 1e-6 degree
-  MotionClock clock = MotionClock::azimuth;
-  std::int32_t zero_tick = 0;  ///< where s is 0; s reaches -1/2 and 1/2 half a turn away
+  std::int32_t zero_tick = 0;                 ///< where s is 0; 0 is forward
 
   [[nodiscard]] bool operator==(const Motion&) const = default;
 };

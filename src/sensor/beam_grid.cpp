@@ -36,12 +36,9 @@ double lateral_turns(const BeamGeometry& beam, double rho) {
 
 // When a point was measured, turns from the motion's zero.
 double point_time(const Motion& motion, const SensorModel& model, const BeamGeometry& beam,
-                  int firing, int lag, double aside_turns) {
-  if (motion.clock == MotionClock::firing) {
-    return motion_time(firing, motion, model.ticks_per_turn);
-  }
-  return motion_time(firing + lag, motion, model.ticks_per_turn) +
-         beam.phase / model.ticks_per_turn + aside_turns;
+                  int tick, double aside_turns) {
+  return motion_time(tick, motion, model.ticks_per_turn) + beam.phase / model.ticks_per_turn +
+         aside_turns;
 }
 
 // What projection needs of a beam, in floats, side by side.
@@ -92,8 +89,7 @@ struct BeamProjector::State {
 
   void locate(std::size_t count, const BeamGridOptions& options);
   void locate_batch(std::size_t begin, std::size_t end, float max_miss);
-  void undo_motion(const Motion& motion);
-  [[nodiscard]] double time_of(const std::array<double, 3>& p, const Motion& motion) const;
+  void undo_motion(const Motion& motion, std::size_t begin, std::size_t end);
   void drop_mistimed(const Motion& motion);
   void fill(const BeamGridOptions& options, BeamImage& image);
   [[nodiscard]] bool takes(std::size_t i, const BeamImage& image, std::size_t cell) const;
@@ -167,47 +163,47 @@ void BeamProjector::State::locate_batch(std::size_t begin, std::size_t end, floa
 }
 
 // From deskewed points to the sensor's own, in place. The time is that of the sensor's own azimuth:
-// found by going back and forth.
-void BeamProjector::State::undo_motion(const Motion& motion) {
-  const Twist twist(motion);
-  times.assign(x.size(), 0.0F);
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const std::array<double, 3> q{x[i], y[i], z[i]};
-    const double size = std::abs(q[0]) + std::abs(q[1]) + std::abs(q[2]);
-    if (!(size > 1e-4 && size < kMaxRange)) continue;
-    std::array<double, 3> p = q;
-    double time = 0.0;
-    for (int round = 0; round < 4; ++round) {
-      time = time_of(p, motion);
-      p = twist.undo(q, time);
+// found by going back and forth, which gains a digit or more each time. Loops are such that
+// compilers vectorise them.
+void BeamProjector::State::undo_motion(const Motion& motion, std::size_t begin, std::size_t end) {
+  const Twist<float> twist(motion);
+  const float zero =
+      static_cast<float>(motion.zero_tick) / static_cast<float>(model.ticks_per_turn);
+  std::array<float, kBatch> px;
+  std::array<float, kBatch> py;
+  std::array<float, kBatch> pz;
+  const std::size_t count = end - begin;
+  std::copy(&x[begin], &x[begin] + count, px.begin());
+  std::copy(&y[begin], &y[begin] + count, py.begin());
+  for (int round = 0; round < 4; ++round) {
+    for (std::size_t i = 0; i < count; ++i) {
+      float time = arc_tangent_fast(py[i], px[i]) * kInverseTurn - zero;
+      time = time >= 0.5F ? time - 1.0F : time;
+      time = time < -0.5F ? time + 1.0F : time;
+      const auto p = twist.undo({x[begin + i], y[begin + i], z[begin + i]}, time);
+      times[begin + i] = time;
+      px[i] = p[0];
+      py[i] = p[1];
+      pz[i] = p[2];
     }
-    times[i] = static_cast<float>(time);
-    x[i] = static_cast<float>(p[0]);
-    y[i] = static_cast<float>(p[1]);
-    z[i] = static_cast<float>(p[2]);
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool origin = x[begin + i] == 0.0F && y[begin + i] == 0.0F;  // "no return" stays
+    x[begin + i] = origin ? 0.0F : px[i];
+    y[begin + i] = origin ? 0.0F : py[i];
+    z[begin + i] = origin ? z[begin + i] : pz[i];
   }
 }
 
-// When the sensor measured its point p.
-double BeamProjector::State::time_of(const std::array<double, 3>& p, const Motion& motion) const {
-  const double rho = std::sqrt(p[0] * p[0] + p[1] * p[1]);
-  if (rho < 1e-4) return 0.0;
-  const std::size_t k = table.nearest(static_cast<float>(rho), static_cast<float>(p[2]));
-  const double aside = lateral_turns(geometry[k], rho);
-  const double at =
-      (arc_tangent(p[1], p[0]) / kTurn - aside) * model.ticks_per_turn - geometry[k].phase;
-  const int firing = static_cast<int>(std::floor(at + 0.5)) - beams[k].lag;
-  return point_time(motion, model, geometry[k], firing, beams[k].lag, aside);
-}
-
 void BeamProjector::State::locate(std::size_t count, const BeamGridOptions& options) {
-  if (options.motion) undo_motion(*options.motion);
   places.resize(count);
   samples.resize(count);
   reasons.resize(count);
+  times.resize(options.motion ? count : 0);
   for (std::size_t begin = 0; begin < count; begin += kBatch) {
-    locate_batch(begin, std::min(begin + kBatch, count),
-                 static_cast<float>(options.max_height_residual_m));
+    const std::size_t end = std::min(begin + kBatch, count);
+    if (options.motion) undo_motion(*options.motion, begin, end);
+    locate_batch(begin, end, static_cast<float>(options.max_height_residual_m));
   }
   if (options.motion) drop_mistimed(*options.motion);
 }
@@ -218,7 +214,7 @@ void BeamProjector::State::drop_mistimed(const Motion& motion) {
   for (std::size_t i = 0; i < places.size(); ++i) {
     if (places[i].tick < 0) continue;
     const BeamGeometry& g = geometry[places[i].beam];
-    const double time = point_time(motion, model, g, places[i].tick, beams[places[i].beam].lag,
+    const double time = point_time(motion, model, g, places[i].tick + beams[places[i].beam].lag,
                                    lateral_turns(g, samples[i].rho));
     if (std::abs(time - times[i]) < 0.25) continue;
     places[i].tick = -1;
@@ -436,11 +432,10 @@ void BeamUnprojector::redo_motion(const BeamImage& image, int k) {
   const std::int32_t* range = image.range.data() + static_cast<std::size_t>(k) * cols;
   const BeamGeometry& beam = beams_[static_cast<std::size_t>(k)];
   const std::int32_t lag = model_.beams[static_cast<std::size_t>(k)].lag;
-  const Twist twist(*image.motion);
+  const Twist<double> twist(*image.motion);
   for (std::size_t j = 0; j < cols; ++j) {
-    if (range[j] == 0) continue;
     const double aside = lateral_turns(beam, range[j] * beam.inverse_slant / kRangeUnits);
-    const double time = point_time(*image.motion, model_, beam, image.firing_tick[j], lag, aside);
+    const double time = point_time(*image.motion, model_, beam, image.firing_tick[j] + lag, aside);
     const auto q = twist.redo({x_[j], y_[j], z_[j]}, time);
     x_[j] = static_cast<float>(q[0]);
     y_[j] = static_cast<float>(q[1]);

@@ -2,27 +2,65 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
+#include "core/trig.hpp"
 #include "sweepcast/sensor_model.hpp"
 
 namespace sweepcast {
 
-/// The twist of a motion in doubles. From + - * / alone, so that encoder and decoder agree.
+/// The twist of a motion. From + - * / alone: with doubles encoder and decoder agree to the bit;
+/// floats are for projection, which need not.
+template <class Real>
 class Twist {
  public:
-  explicit Twist(const Motion& motion);
+  using Point = std::array<Real, 3>;
+
+  explicit Twist(const Motion& motion) {
+    double squared = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double angle = static_cast<double>(motion.rotation[i]) / kAngleUnits * kDegree;
+      rotation_[i] = static_cast<Real>(angle);
+      translation_m_[i] =
+          static_cast<Real>(static_cast<double>(motion.translation[i]) / kLengthUnits);
+      squared += angle * angle;
+    }
+    angle_squared_ = static_cast<Real>(squared);
+  }
 
   /// p = R(s * rotation) q + s * translation: from the deskewed point to the sensor's own.
-  [[nodiscard]] std::array<double, 3> undo(const std::array<double, 3>& q, double s) const;
+  [[nodiscard]] Point undo(const Point& q, Real s) const {
+    const Point p = turn(q, s);
+    const Point& v = translation_m_;
+    return {p[0] + s * v[0], p[1] + s * v[1], p[2] + s * v[2]};
+  }
 
   /// The inverse: q = R(s * rotation)^T (p - s * translation).
-  [[nodiscard]] std::array<double, 3> redo(const std::array<double, 3>& p, double s) const;
+  [[nodiscard]] Point redo(const Point& p, Real s) const {
+    const Point& v = translation_m_;
+    return turn({p[0] - s * v[0], p[1] - s * v[1], p[2] - s * v[2]}, -s);
+  }
 
  private:
-  [[nodiscard]] std::array<double, 3> turn(const std::array<double, 3>& p, double s) const;
+  // Rodrigues: p + a (w x p) + b (w x (w x p)) with a = sin(s|w|) / |w|, b = (1 - cos(s|w|)) /
+  // |w|^2 as power series, which need no |w|; a sweep turns by well under a radian.
+  [[nodiscard]] Point turn(const Point& p, Real s) const {
+    const Point& w = rotation_;
+    constexpr Real k1 = 1;
+    const Real u = s * s * angle_squared_;
+    const Real a = s * (k1 - u / 6 * (k1 - u / 20 * (k1 - u / 42 * (k1 - u / 72))));
+    const Real b = s * s / 2 * (k1 - u / 12 * (k1 - u / 30 * (k1 - u / 56 * (k1 - u / 90))));
+    const Point c = cross(w, p);
+    const Point d = cross(w, c);
+    return {p[0] + a * c[0] + b * d[0], p[1] + a * c[1] + b * d[1], p[2] + a * c[2] + b * d[2]};
+  }
 
-  std::array<double, 3> translation_m_{}, rotation_{};  // rotation in radians
-  double angle_squared_ = 0.0;
+  static Point cross(const Point& w, const Point& p) {
+    return {w[1] * p[2] - w[2] * p[1], w[2] * p[0] - w[0] * p[2], w[0] * p[1] - w[1] * p[0]};
+  }
+
+  Point translation_m_{}, rotation_{};  // rotation in radians
+  Real angle_squared_ = 0;
 };
 
 /// Time of a whole tick within the sweep: turns from the motion's zero, [-1/2, 1/2).

@@ -140,7 +140,7 @@ TwistVector twist_vector(const Motion& motion) {
 }
 
 void undo_motion(const CloudView& cloud, const Motion& motion, PointCloud& own) {
-  const Twist twist(motion);
+  const Twist<double> twist(motion);
   own.clear();
   own.resize_xyz(cloud.size);
   for (std::size_t i = 0; i < cloud.size; ++i) {
@@ -170,7 +170,7 @@ MotionFitter::MotionFitter(const CloudView& cloud, std::size_t stride) {
 }
 
 void MotionFitter::undo(const TwistVector& vector) {
-  const Twist twist(quantised_motion(vector));
+  const Twist<double> twist(quantised_motion(vector));
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const std::array<double, 3> q{points_[i][0], points_[i][1], points_[i][2]};
     std::array<double, 3> p = q;
