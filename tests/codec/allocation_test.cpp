@@ -45,10 +45,12 @@ void* malloc(std::size_t size) {
   ++allocations;
   return __libc_malloc(size);
 }
+// NOLINTNEXTLINE(readability-inconsistent-declaration-parameter-name)
 void* calloc(std::size_t count, std::size_t size) {
   ++allocations;
   return __libc_calloc(count, size);
 }
+// NOLINTNEXTLINE(readability-inconsistent-declaration-parameter-name)
 void* realloc(void* memory, std::size_t size) {
   ++allocations;
   return __libc_realloc(memory, size);

@@ -6,45 +6,22 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <numbers>
-#include <numeric>
-#include <utility>
 
 #include "core/random.hpp"
+#include "sensor/slow_grid.hpp"
 
 namespace sweepcast {
 namespace {
 
+using test::add;
+using test::add_polar;
+using test::Polar;
+using test::polar_of;
+using test::SlowGrid;
 using test::uniform;
 
-constexpr double kDeg = 180.0 / std::numbers::pi;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-void add(PointCloud& cloud, double x, double y, double z) {
-  cloud.x.push_back(static_cast<float>(x));
-  cloud.y.push_back(static_cast<float>(y));
-  cloud.z.push_back(static_cast<float>(z));
-}
-
-void add_polar(PointCloud& cloud, double azimuth_deg, double elevation_deg, double range) {
-  const double a = azimuth_deg / kDeg;
-  const double e = elevation_deg / kDeg;
-  add(cloud, range * std::cos(e) * std::cos(a), range * std::cos(e) * std::sin(a),
-      range * std::sin(e));
-}
-
-struct Polar {
-  double azimuth, elevation, range;  // degrees, degrees, metres
-};
-
-Polar polar_of(const PointCloud& cloud, std::size_t i) {
-  const double x = cloud.x[i];
-  const double y = cloud.y[i];
-  const double z = cloud.z[i];
-  return {std::atan2(y, x) * kDeg, std::atan2(z, std::hypot(x, y)) * kDeg, std::hypot(x, y, z)};
-}
 
 struct Projected {
   RangeImage image;
@@ -65,62 +42,6 @@ std::size_t occupied(const RangeImage& image) {
   return image.range_mm.size() -
          static_cast<std::size_t>(std::count(image.range_mm.begin(), image.range_mm.end(), 0));
 }
-
-/// The same in double, slow and plain: all points of every cell, and the counts.
-struct SlowGrid {
-  struct Candidate {
-    double off_centre;  // steps
-    double range;
-  };
-  std::map<std::pair<int, int>, std::vector<Candidate>> cells;  // by row (of the view) and column
-  SweepCounts counts;
-
-  SlowGrid(const PointCloud& cloud, const RcpccOptions& o, const Crop& crop) {
-    for (std::size_t i = 0; i < cloud.size(); ++i) add_point(cloud, i, o, crop);
-    for (const auto& cell : cells) {
-      ++counts.points_coded;
-      counts.collided += static_cast<std::uint32_t>(cell.second.size() - 1);
-    }
-  }
-
-  void add_point(const PointCloud& cloud, std::size_t i, const RcpccOptions& o, const Crop& crop) {
-    ++counts.points_in;
-    if (!std::isfinite(cloud.x[i]) || !std::isfinite(cloud.y[i]) || !std::isfinite(cloud.z[i])) {
-      ++counts.not_finite;
-      return;
-    }
-    const Polar p = polar_of(cloud, i);
-    if (p.range < 0.0005) {
-      ++counts.zero_range;
-      return;
-    }
-    const auto in = [&](const Box& b) {
-      return b.min_x <= cloud.x[i] && cloud.x[i] <= b.max_x && b.min_y <= cloud.y[i] &&
-             cloud.y[i] <= b.max_y && b.min_z <= cloud.z[i] && cloud.z[i] <= b.max_z;
-    };
-    if (p.range < crop.min_range || (crop.max_range > 0 && p.range > crop.max_range) ||
-        (crop.keep && !in(*crop.keep)) || (crop.robot && in(*crop.robot))) {
-      ++counts.cropped;
-      return;
-    }
-    const double from_first = std::fmod(p.azimuth - o.azimuth_min_deg + 720.0, 360.0);
-    double width = o.azimuth_max_deg - o.azimuth_min_deg;
-    if (width <= 0) width += 360.0;
-    const double u = from_first / o.params.azimuth_step_deg;
-    const double v = (p.elevation - o.elevation_min_deg) / o.params.elevation_step_deg;
-    const double cols = std::ceil(width / o.params.azimuth_step_deg - 1e-9);
-    const double rows =
-        std::ceil((o.elevation_max_deg - o.elevation_min_deg) / o.params.elevation_step_deg - 1e-9);
-    if (p.range > o.max_range_m || u >= cols || v < 0 || v >= rows) {
-      ++counts.out_of_view;
-      return;
-    }
-    const double row = std::floor(v);
-    const double col = std::floor(u);
-    cells[{static_cast<int>(row), static_cast<int>(col)}].push_back(
-        {std::hypot(u - col - 0.5, v - row - 0.5), p.range});
-  }
-};
 
 /// A random cloud of points that lie clearly on one side of every limit, so that float and double
 /// must agree on the cell.

@@ -259,9 +259,8 @@ TEST(Surface, PointsInOneLineGiveFiniteCoefficients) {
 TEST(Surface, ABlockWhoseEmptyCentreExtrapolatesKilometresAwayCanBeRead) {
   const double r0 = 3000;
   const double gu = -11600;
-  const RangeImage image = image_of(16, 16, [&](int, int col) {
-    return col < 5 ? r0 * r0 / (r0 + gu * (col - 7.5)) : 0.0;
-  });
+  const RangeImage image = image_of(
+      16, 16, [&](int, int col) { return col < 5 ? r0 * r0 / (r0 + gu * (col - 7.5)) : 0.0; });
   for_all_options([&](const SurfaceOptions& options) { fit(image, options); });
 }
 

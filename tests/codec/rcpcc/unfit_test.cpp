@@ -52,7 +52,7 @@ std::map<std::pair<int, int>, double> rms_by_region(const RangeImage& a, const R
   std::map<std::pair<int, int>, std::pair<double, int>> sums;
   for (int row = 0; row < a.grid.rows; ++row) {
     for (int col = 0; col < a.grid.cols; ++col) {
-      const auto cell = static_cast<std::size_t>(row * a.grid.cols + col);
+      const auto cell = static_cast<std::size_t>(&a.row(row)[col] - a.range_mm.data());
       if (a.range_mm[cell] == 0 || fitted[cell] != 0) continue;
       auto& [squares, count] = sums[{row / region_size, col / region_size}];
       squares += std::pow(a.range_mm[cell] - b.range_mm[cell], 2);
@@ -137,7 +137,7 @@ TEST(Unfit, RawRangesAreExact) {
 }
 
 TEST(Unfit, RangesAtTheExtremesStayPositive) {
-  const Mask none(4 * 8, 0);
+  const Mask none(32, 0);
   for (const UnfitCoding coding : {UnfitCoding::sa_dct, UnfitCoding::raw}) {
     for (const std::int32_t step : {1, 10000}) {
       const UnfitOptions options{4, step, coding, Rounding::nearest};
