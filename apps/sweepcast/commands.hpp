@@ -13,6 +13,7 @@ void add_decode(CLI::App& app, Command& command);
 void add_info(CLI::App& app, Command& command);
 void add_verify(CLI::App& app, Command& command);
 void add_compare(CLI::App& app, Command& command);
+void add_calibrate(CLI::App& app, Command& command);
 
 /// Lists simulate, bench and ablate in the help; `run_lab` runs them.
 void add_lab(CLI::App& app);

@@ -28,6 +28,7 @@ int run_tool(int argc, char** argv) {
   add_info(app, command);
   add_verify(app, command);
   add_compare(app, command);
+  add_calibrate(app, command);
   add_lab(app);
   return run(app, command, argc, argv);
 }

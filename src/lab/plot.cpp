@@ -5,9 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <fstream>
 
 namespace sweepcast::lab {
 namespace {
@@ -31,16 +28,6 @@ std::vector<Curve> curves_of(std::span<const BenchRow> rows) {
                      [](const BenchRow* a, const BenchRow* b) { return a->ratio < b->ratio; });
   }
   return curves;
-}
-
-/// Text between double quotes as gnuplot reads it.
-std::string gnuplot_string(std::string_view text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') result += '\\';
-    result += c;
-  }
-  return result + "\"";
 }
 
 /// One panel: what its vertical axis shows.
@@ -109,56 +96,21 @@ set style line 5 linewidth 2 pointtype 13 pointsize 0.9 linecolor rgb "#b08a00"
 set style line 6 linewidth 2 pointtype 4 pointsize 0.9 linecolor rgb "#444444"
 )gnuplot";
 
-bool is_svg(const std::filesystem::path& output) {
-  return output.extension() == ".svg";
-}
-
-bool has_gnuplot() {
-  return std::system("command -v gnuplot >/dev/null 2>&1") == 0;
-}
-
 }  // namespace
 
 std::string rate_distortion_script(std::span<const BenchRow> rows,
                                    const std::filesystem::path& output) {
   const std::vector<Curve> curves = curves_of(rows);
-  std::string script = is_svg(output) ? "set terminal svg size 1650,600 font 'sans,11' "
-                                        "background 'white'\n"
-                                      : "set terminal pngcairo size 1650,600 font 'sans,11'\n";
-  script += fmt::format("set output {}\n{}", gnuplot_string(output.string()), kStyle);
+  std::string script = plot_output(output, 1650, 600) + kStyle;
   for (const Panel& panel : kPanels) script += panel_script(curves, panel);
   return script + "unset multiplot\nunset output\n";
 }
 
-Status check_plot(const std::filesystem::path& output) {
-  const std::string file = output.string();
-  if (!is_svg(output) && output.extension() != ".png") {
-    return fail(ErrorCode::invalid_argument,
-                file + ": plots are .png or .svg; give the file one of these extensions");
-  }
-  if (!has_gnuplot()) {
-    return fail(ErrorCode::not_found,
-                file + ": gnuplot, which draws the plot, is absent; apt-get install gnuplot-nox");
-  }
-  if (!std::ofstream(output, std::ios::app)) {
-    return fail(ErrorCode::io, file + ": cannot be written; is the folder there and writable?");
-  }
-  return {};
-}
-
 Status plot_rate_distortion(std::span<const BenchRow> rows, const std::filesystem::path& output) {
-  const std::string file = output.string();
-  if (rows.empty()) return fail(ErrorCode::invalid_argument, file + ": nothing to plot");
-  if (Status possible = check_plot(output); !possible) return possible;
-  const std::string script = rate_distortion_script(rows, output);
-  std::FILE* pipe = popen("gnuplot >/dev/null", "w");
-  if (pipe == nullptr) return fail(ErrorCode::io, file + ": gnuplot could not be started");
-  const bool sent = std::fwrite(script.data(), 1, script.size(), pipe) == script.size();
-  const bool drawn = pclose(pipe) == 0;
-  if (!sent || !drawn) {
-    return fail(ErrorCode::io, file + ": gnuplot failed; its message is above, if it had one");
+  if (rows.empty()) {
+    return fail(ErrorCode::invalid_argument, output.string() + ": nothing to plot");
   }
-  return {};
+  return draw_plot(rate_distortion_script(rows, output), output);
 }
 
 }  // namespace sweepcast::lab

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "lab/bench.hpp"
+#include "lab/gnuplot.hpp"
 #include "sweepcast/status.hpp"
 
 namespace sweepcast::lab {
@@ -15,10 +16,6 @@ namespace sweepcast::lab {
 /// figure are left out of that panel.
 [[nodiscard]] std::string rate_distortion_script(std::span<const BenchRow> rows,
                                                  const std::filesystem::path& output);
-
-/// Whether a plot can be drawn into this file. Errors: invalid_argument (extension other than .png
-/// or .svg), not_found (no gnuplot on this machine), io (the file cannot be written).
-[[nodiscard]] Status check_plot(const std::filesystem::path& output);
 
 /// Runs the script. Errors: those of `check_plot`, invalid_argument (no rows), io (gnuplot failed).
 [[nodiscard]] Status plot_rate_distortion(std::span<const BenchRow> rows,

@@ -1,0 +1,65 @@
+#include "lab/gnuplot.hpp"
+
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+
+namespace sweepcast::lab {
+namespace {
+
+bool is_svg(const std::filesystem::path& output) {
+  return output.extension() == ".svg";
+}
+
+bool has_gnuplot() {
+  return std::system("command -v gnuplot >/dev/null 2>&1") == 0;
+}
+
+}  // namespace
+
+std::string gnuplot_string(std::string_view text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    result += c;
+  }
+  return result + "\"";
+}
+
+std::string plot_output(const std::filesystem::path& output, int width, int height) {
+  const std::string size = std::to_string(width) + "," + std::to_string(height);
+  return "set terminal " + std::string(is_svg(output) ? "svg" : "pngcairo") + " size " + size +
+         " font 'sans,11'" + (is_svg(output) ? " background 'white'" : "") + "\nset output " +
+         gnuplot_string(output.string()) + "\n";
+}
+
+Status check_plot(const std::filesystem::path& output) {
+  const std::string file = output.string();
+  if (!is_svg(output) && output.extension() != ".png") {
+    return fail(ErrorCode::invalid_argument,
+                file + ": plots are .png or .svg; give the file one of these extensions");
+  }
+  if (!has_gnuplot()) {
+    return fail(ErrorCode::not_found,
+                file + ": gnuplot, which draws the plot, is absent; apt-get install gnuplot-nox");
+  }
+  if (!std::ofstream(output, std::ios::app)) {
+    return fail(ErrorCode::io, file + ": cannot be written; is the folder there and writable?");
+  }
+  return {};
+}
+
+Status draw_plot(const std::string& script, const std::filesystem::path& output) {
+  if (Status possible = check_plot(output); !possible) return possible;
+  const std::string file = output.string();
+  std::FILE* pipe = popen("gnuplot >/dev/null", "w");
+  if (pipe == nullptr) return fail(ErrorCode::io, file + ": gnuplot could not be started");
+  const bool sent = std::fwrite(script.data(), 1, script.size(), pipe) == script.size();
+  const bool drawn = pclose(pipe) == 0;
+  if (!sent || !drawn) {
+    return fail(ErrorCode::io, file + ": gnuplot failed; its message is above, if it had one");
+  }
+  return {};
+}
+
+}  // namespace sweepcast::lab
