@@ -117,6 +117,90 @@ double sideways_error(std::span<const Sample> samples, double ticks, const BeamA
   return errors.empty() ? 0.0 : *at;
 }
 
+// Finds lags: every beam's ticks, shifted by its lag, should fall on those of the others.
+class LagFinder {
+ public:
+  LagFinder(std::span<const BeamSamples> sweeps, int ticks_per_turn, std::span<BeamAzimuth> beams)
+      : beams_(beams), turn_(ticks_per_turn), reach_(static_cast<int>(turn_ * kMaxLagTurns)) {
+    for (const BeamSamples& sweep : sweeps) {
+      fired_.emplace_back(static_cast<std::size_t>(turn_), 0);
+      auto& own = ticks_.emplace_back(beams.size());
+      for (std::size_t i = 0; i < sweep.size(); ++i) {
+        const BeamAzimuth& beam = beams[sweep.beam[i]];
+        const double lateral = beam.lateral_m * sweep.inverse_rho[i] / kTurn;
+        const double at = turn_ * (sweep.turn[i] - lateral) - beam.phase;
+        own[sweep.beam[i]].push_back(wrapped(static_cast<int>(std::lround(at))));
+      }
+    }
+  }
+
+  // Adds a beam's ticks to the firings, or takes them away.
+  void count(std::size_t k, int weight) {
+    for (std::size_t n = 0; n < fired_.size(); ++n) {
+      for (const int tick : ticks_[n][k]) {
+        fired_[n][static_cast<std::size_t>(wrapped(tick - beams_[k].lag))] += weight;
+      }
+    }
+  }
+
+  // The lag that takes most ticks to firings; of several, the smallest. That many beams fired
+  // counts for no more than that `enough` did: where firings are at nearly equal distances the
+  // scene would decide, else.
+  [[nodiscard]] int best_lag(std::size_t k, int enough) const {
+    std::vector<std::int64_t> score(static_cast<std::size_t>(2 * reach_ + 1), 0);
+    for (std::size_t n = 0; n < fired_.size(); ++n) {
+      const auto& own = ticks_[n][k];
+      const std::size_t step = own.size() / 1500 + 1;
+      for (std::size_t i = 0; i < own.size(); i += step) {
+        int at = wrapped(own[i] - reach_);
+        for (int lag = reach_; lag >= -reach_; --lag) {
+          score[static_cast<std::size_t>(lag + reach_)] +=
+              std::min(fired_[n][static_cast<std::size_t>(at)], enough);
+          if (++at == turn_) at = 0;
+        }
+      }
+    }
+    const std::int64_t most = *std::max_element(score.begin(), score.end());
+    for (int lag = 0; lag <= reach_; ++lag) {
+      if (score[static_cast<std::size_t>(reach_ + lag)] == most) return lag;
+      if (score[static_cast<std::size_t>(reach_ - lag)] == most) return -lag;
+    }
+    return 0;
+  }
+
+  // Ticks at which any beam fired, all sweeps together.
+  [[nodiscard]] std::size_t firings() const {
+    std::size_t count = 0;
+    for (const auto& sweep : fired_) {
+      count += sweep.size() - static_cast<std::size_t>(std::count(sweep.begin(), sweep.end(), 0));
+    }
+    return count;
+  }
+
+  // Beams, the one of most points first.
+  [[nodiscard]] std::vector<std::size_t> order() const {
+    std::vector<std::size_t> beams(beams_.size());
+    for (std::size_t k = 0; k < beams.size(); ++k) beams[k] = k;
+    const auto& own = ticks_.front();
+    std::sort(beams.begin(), beams.end(),
+              [&](std::size_t a, std::size_t b) { return own[a].size() > own[b].size(); });
+    return beams;
+  }
+
+ private:
+  static constexpr double kMaxLagTurns = 25.0 / 360.0;
+
+  [[nodiscard]] int wrapped(int tick) const {
+    tick %= turn_;
+    return tick < 0 ? tick + turn_ : tick;
+  }
+
+  std::span<BeamAzimuth> beams_;
+  int turn_, reach_;
+  std::vector<std::vector<int>> fired_;               // per sweep and tick: beams
+  std::vector<std::vector<std::vector<int>>> ticks_;  // per sweep and beam
+};
+
 }  // namespace
 
 std::span<const int> encoder_ticks() {
@@ -160,67 +244,31 @@ std::vector<BeamAzimuth> fit_azimuths(std::span<const BeamSamples> sweeps, std::
 
 void fit_lags(std::span<const BeamSamples> sweeps, int ticks_per_turn,
               std::span<BeamAzimuth> beams) {
-  constexpr double kMaxLagTurns = 25.0 / 360.0;
-  const int reach = static_cast<int>(ticks_per_turn * kMaxLagTurns);
-  const auto turn = static_cast<std::size_t>(ticks_per_turn);
-  // Occupied ticks of each beam in each of the first sweeps.
-  const std::size_t used = std::min<std::size_t>(sweeps.size(), 3);
-  std::vector<std::vector<int>> ticks(used * beams.size());
-  for (std::size_t n = 0; n < used; ++n) {
-    for (std::size_t i = 0; i < sweeps[n].size(); ++i) {
-      const std::size_t k = sweeps[n].beam[i];
-      const double lateral = beams[k].lateral_m * sweeps[n].inverse_rho[i] / kTurn;
-      const double at = ticks_per_turn * (sweeps[n].turn[i] - lateral) - beams[k].phase;
-      const int tick = static_cast<int>(std::lround(at)) % ticks_per_turn;
-      ticks[n * beams.size() + k].push_back(tick < 0 ? tick + ticks_per_turn : tick);
-    }
-  }
-  std::vector<std::size_t> order(beams.size());
-  for (std::size_t k = 0; k < beams.size(); ++k) order[k] = k;
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return ticks[a].size() > ticks[b].size(); });
-
-  std::vector<std::vector<float>> fired(used, std::vector<float>(turn, 0.0F));
-  const auto add = [&](std::size_t k, float weight) {
-    for (std::size_t n = 0; n < used; ++n) {
-      for (const int tick : ticks[n * beams.size() + k]) {
-        fired[n]
-             [static_cast<std::size_t>((tick - beams[k].lag + ticks_per_turn) % ticks_per_turn)] +=
-            weight;
-      }
-    }
-  };
-  std::vector<double> score(static_cast<std::size_t>(2 * reach + 1));
-  const auto best_lag = [&](std::size_t k) {
-    std::fill(score.begin(), score.end(), 0.0);
-    for (std::size_t n = 0; n < used; ++n) {
-      const auto& own = ticks[n * beams.size() + k];
-      const std::size_t step = own.size() / 700 + 1;
-      for (std::size_t i = 0; i < own.size(); i += step) {
-        int at = (own[i] - reach + ticks_per_turn) % ticks_per_turn;
-        for (int lag = reach; lag >= -reach; --lag) {
-          score[static_cast<std::size_t>(lag + reach)] += fired[n][static_cast<std::size_t>(at)];
-          if (++at == ticks_per_turn) at = 0;
-        }
-      }
-    }
-    const double most = *std::max_element(score.begin(), score.end());
-    for (int lag = 0; lag <= reach; ++lag) {
-      if (score[static_cast<std::size_t>(reach + lag)] >= most) return lag;
-      if (score[static_cast<std::size_t>(reach - lag)] >= most) return -lag;
-    }
-    return 0;
-  };
-  add(order.front(), 1.0F);
+  constexpr std::size_t kSweeps = 3;
+  LagFinder finder(sweeps.first(std::min(sweeps.size(), kSweeps)), ticks_per_turn, beams);
+  const std::vector<std::size_t> order = finder.order();
+  finder.count(order.front(), 1);
   for (std::size_t i = 1; i < order.size(); ++i) {
-    beams[order[i]].lag = best_lag(order[i]);
-    add(order[i], 1.0F);
+    beams[order[i]].lag = finder.best_lag(order[i], static_cast<int>(beams.size()));
+    finder.count(order[i], 1);
   }
-  for (const std::size_t k : order) {  // the first ones had little to go by
-    add(k, -1.0F);
-    beams[k].lag = best_lag(k);
-    add(k, 1.0F);
+  // The first ones had little to go by. What serves one sensor does not serve all: the lags that
+  // leave the fewest firings are kept.
+  const int all = static_cast<int>(beams.size());
+  std::vector<BeamAzimuth> best(beams.begin(), beams.end());
+  std::size_t fewest = finder.firings();
+  for (const int enough : {all, std::max(2, all / 4), std::max(2, all / 4)}) {
+    for (const std::size_t k : order) {
+      finder.count(k, -1);
+      beams[k].lag = finder.best_lag(k, enough);
+      finder.count(k, 1);
+    }
+    if (finder.firings() < fewest) {
+      fewest = finder.firings();
+      std::copy(beams.begin(), beams.end(), best.begin());
+    }
   }
+  std::copy(best.begin(), best.end(), beams.begin());
 }
 
 }  // namespace sweepcast
