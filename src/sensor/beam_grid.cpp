@@ -118,6 +118,7 @@ struct BeamProjector::State {
 // Beam, tick and range of points [begin, end).
 void BeamProjector::State::locate_batch(std::size_t begin, std::size_t end, float max_miss) {
   std::array<float, kBatch> rhos;
+  std::array<float, kBatch> inverses;
   std::array<float, kBatch> turns;
   const auto ticks = static_cast<float>(model.ticks_per_turn);
   const std::size_t count = end - begin;
@@ -125,6 +126,7 @@ void BeamProjector::State::locate_batch(std::size_t begin, std::size_t end, floa
     const float px = x[begin + i];
     const float py = y[begin + i];
     rhos[i] = std::sqrt(px * px + py * py);
+    inverses[i] = 1.0F / rhos[i];
     turns[i] = arc_tangent_fast(py, px) * kInverseTurn;
   }
   for (std::size_t i = 0; i < count; ++i) {
@@ -141,13 +143,13 @@ void BeamProjector::State::locate_batch(std::size_t begin, std::size_t end, floa
       reasons[begin + i] = pz == 0.0F ? ExtraReason::zero_range : ExtraReason::stray;
       continue;
     }
-    const std::size_t k = table.nearest(rho, pz);
+    const std::size_t k = table.nearest(rho, pz, inverses[i]);
     const FloatBeam& beam = beams[k];
     const float above = pz - beam.height;
     const float error = above - rho * beam.tan;
     const float along = (rho + above * beam.tan) * beam.inverse_slant;
     const std::int32_t range = nearest(along * kRangeUnits);
-    const float q = beam.lateral / rho;
+    const float q = beam.lateral * inverses[i];
     if (std::abs(error) > max_miss || range <= 0 || range > (1 << 30) || std::abs(q) > 0.5F) {
       reasons[begin + i] = ExtraReason::stray;
       continue;
@@ -155,8 +157,9 @@ void BeamProjector::State::locate_batch(std::size_t begin, std::size_t end, floa
     const float aside = (q + q * q * q * (1.0F / 6.0F)) * kInverseTurn;  // arc sine
     const float at = (turns[i] - aside) * ticks - beam.phase;
     const std::int32_t tick = nearest(at);
-    std::int32_t firing = (tick - beam.lag) % model.ticks_per_turn;
-    if (firing < 0) firing += model.ticks_per_turn;
+    std::int32_t firing = tick - beam.lag;  // at most two turns off
+    while (firing < 0) firing += model.ticks_per_turn;
+    while (firing >= model.ticks_per_turn) firing -= model.ticks_per_turn;
     place = {firing, static_cast<std::uint16_t>(k)};
     samples[begin + i] = {rho, error, at - static_cast<float>(tick), range};
   }

@@ -209,12 +209,14 @@ std::vector<BeamLine> find_beam_lines(const Profile& points, const LineSearch& s
 }
 
 LineTable::LineTable(std::span<const BeamLine> lines) {
+  constexpr float kBeyond = 1e30F;
   std::vector<double> heights;
+  lines_.push_back({0.0F, kBeyond});
   for (const BeamLine& line : lines) {
-    tan_.push_back(static_cast<float>(line.tan));
-    heights_.push_back(static_cast<float>(line.height));
+    lines_.push_back({static_cast<float>(line.tan), static_cast<float>(line.height)});
     heights.push_back(line.height);
   }
+  lines_.push_back({0.0F, kBeyond});
   std::nth_element(heights.begin(),
                    heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2),
                    heights.end());
@@ -233,7 +235,7 @@ LineTable::LineTable(std::span<const BeamLine> lines) {
            std::abs(lines[k + 1].tan - slope) < std::abs(lines[k].tan - slope)) {
       ++k;
     }
-    start_[static_cast<std::size_t>(i)] = static_cast<std::uint16_t>(k);
+    start_[static_cast<std::size_t>(i)] = static_cast<std::uint16_t>(k + 1);
   }
 }
 

@@ -2,6 +2,8 @@
 // rho and height z every beam's points lie on a straight line, z = rho * tan + height.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -51,42 +53,39 @@ class LineTable {
   /// Lines ordered by falling tangent; at least one.
   explicit LineTable(std::span<const BeamLine> lines);
 
-  /// Index of the line nearest to (rho, z), rho above 0.
-  [[nodiscard]] std::size_t nearest(float rho, float z) const {
-    const float slope = (z - height_) / rho;
-    const float at = (top_ - slope) * scale_;
+  /// Index of the line nearest to (rho, z), rho above 0; `inverse` is 1 / rho.
+  [[nodiscard]] std::size_t nearest(float rho, float z, float inverse) const {
+    const float at = (top_ - (z - height_) * inverse) * scale_;
     const float clamped = at < 0.0F ? 0.0F : (at > last_ ? last_ : at);
-    std::size_t k = start_[static_cast<std::size_t>(clamped)];
-    float miss = error(k, rho, z);
-    // Lines run downward with k: below the line (miss < 0) look further on.
-    if (miss < 0.0F) {
-      while (k + 1 < tan_.size()) {
-        const float next = error(k + 1, rho, z);
-        if (next < 0.0F ? next < miss : next > -miss) break;
-        miss = next;
-        ++k;
-        if (next >= 0.0F) break;
-      }
-    } else {
-      while (k > 0) {
-        const float next = error(k - 1, rho, z);
-        if (next > 0.0F ? next > miss : next < -miss) break;
-        miss = next;
-        --k;
-        if (next <= 0.0F) break;
-      }
+    std::size_t k = start_[static_cast<std::size_t>(static_cast<std::int32_t>(clamped))];
+    // Mostly it is the one that the table says, or the next; one branch that tells is predictable.
+    float here = distance(k, rho, z);
+    const float above = distance(k - 1, rho, z);
+    const float below = distance(k + 1, rho, z);
+    if ((here <= above) & (here <= below)) return k - 1;
+    const std::size_t step = above < below ? std::size_t(0) - 1 : 1;
+    for (float next = std::min(above, below); next < here; next = distance(k + step, rho, z)) {
+      k += step;
+      here = next;
     }
-    return k;
+    return k - 1;
   }
 
-  /// Height of (rho, z) above line k, metres.
-  [[nodiscard]] float error(std::size_t k, float rho, float z) const {
-    return z - (rho * tan_[k] + heights_[k]);
+  [[nodiscard]] std::size_t nearest(float rho, float z) const {
+    return nearest(rho, z, 1.0F / rho);
   }
 
  private:
-  std::vector<float> tan_, heights_;
-  std::vector<std::uint16_t> start_;
+  [[nodiscard]] float distance(std::size_t k, float rho, float z) const {
+    return std::abs(z - (rho * lines_[k].tan + lines_[k].height));
+  }
+
+  struct Line {
+    float tan, height;
+  };
+
+  std::vector<Line> lines_;           // a line beyond reach at either end
+  std::vector<std::uint16_t> start_;  // index in lines_
   float top_ = 0.0F, scale_ = 1.0F, last_ = 0.0F, height_ = 0.0F;
 };
 
