@@ -76,7 +76,8 @@ Box box_of(const std::array<double, 6>& c, const std::string& option) {
   return {f(c[0]), f(c[1]), f(c[2]), f(c[3]), f(c[4]), f(c[5])};
 }
 
-void add_quality(CLI::App& app, RcpccOptions& rcpcc) {
+void add_quality(CLI::App& app, EncoderOptions& options) {
+  RcpccOptions& rcpcc = options.rcpcc;
   auto* level =
       app.add_option_function<int>(
              "--level",
@@ -93,6 +94,17 @@ void add_quality(CLI::App& app, RcpccOptions& rcpcc) {
                        rcpcc.params = {p[0], p[1], p[2], p[3]};
                      });
   level->excludes(params);
+  app.add_option_function<double>(
+         "--max-error",
+         [&options](double metres) {
+           options.codec = CodecId::beam;
+           options.beam.max_error_m = metres;
+         },
+         fmt::format("Codec beam: no point decodes farther from its place [{}]",
+                     options.beam.max_error_m))
+      ->type_name("METRES")
+      ->excludes(level)
+      ->excludes(params);
 }
 
 void add_view(CLI::App& app, RcpccOptions& rcpcc) {
@@ -116,9 +128,10 @@ void add_view(CLI::App& app, RcpccOptions& rcpcc) {
 
 void add_codec_options(CLI::App& app, EncoderOptions& options) {
   RcpccOptions& rcpcc = options.rcpcc;
-  add_choice<CodecId>(app, "--codec", options.codec, {{"rcpcc", CodecId::rcpcc}},
+  add_choice<CodecId>(app, "--codec", options.codec,
+                      {{"rcpcc", CodecId::rcpcc}, {"beam", CodecId::beam}},
                       "How sweeps are coded [rcpcc]");
-  add_quality(app, rcpcc);
+  add_quality(app, options);
   app.add_option("--block", rcpcc.block_size,
                  fmt::format("Side of a macroblock in cells [{}]", rcpcc.block_size))
       ->check(CLI::IsMember({4, 8, 16}).description(""))
@@ -140,7 +153,7 @@ void add_codec_options(CLI::App& app, EncoderOptions& options) {
       app, "--collision", rcpcc.collision,
       {{"range", CollisionRule::nearest_range}, {"centre", CollisionRule::nearest_centre}},
       "Which point a cell keeps: the one nearest to the sensor, or to the "
-      "cell's centre [range]");
+      "cell's centre [centre]");
   app.add_option("--zstd", rcpcc.zstd_level, fmt::format("Level of zstd [{}]", rcpcc.zstd_level))
       ->check(CLI::Range(1, 22).description(""))
       ->type_name("1..22");

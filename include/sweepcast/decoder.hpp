@@ -11,9 +11,10 @@
 
 namespace sweepcast {
 
-/// Bounds on what a frame may ask for; a frame that exceeds one is refused before any allocation.
+/// What a decoder does. A frame that asks for more points is refused before any allocation.
 struct DecoderOptions {
   std::size_t max_points = std::size_t{1} << 24;
+  int max_layers = 64;  ///< codec beam: decode only this many layers, coarsest first
 };
 
 /// Makes clouds of frames. Needs no parameter beside the frame and trusts nothing in it.

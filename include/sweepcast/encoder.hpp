@@ -69,11 +69,18 @@ struct RcpccOptions {
   int zstd_level = 1;  ///< 1 to 22; docs/rcpcc.md has what each costs
 };
 
+/// Options of codec `beam`.
+struct BeamOptions {
+  double max_error_m = 0.05;  ///< no point decodes farther from its place, metres, 0.001 to 2
+  int model_interval = 10;    ///< every how many frames the sensor's model is sent, at least 1
+};
+
 /// Options of an encoder.
 struct EncoderOptions {
   CodecId codec = CodecId::rcpcc;
   Crop crop;
   RcpccOptions rcpcc;
+  BeamOptions beam;
 };
 
 /// Makes frames of sweeps. Keeps its buffers: from the second sweep of a kind on, `encode`

@@ -15,6 +15,7 @@ namespace sweepcast {
 /// How a sweep was coded.
 enum class CodecId : std::uint8_t {
   rcpcc = 1,  ///< range image, surfaces and SA-DCT (the RCPCC paper, section III.B)
+  beam = 2,   ///< the sensor's own geometry, within an error bound
 };
 
 /// "rcpcc" for `CodecId::rcpcc`; "unknown" for a value that this build does not know.

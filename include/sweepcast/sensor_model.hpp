@@ -66,6 +66,10 @@ struct Motion {
   [[nodiscard]] bool operator==(const Motion&) const = default;
 };
 
+/// Whether a motion is within its bounds: |translation| at most 1 km and |rotation| 90 degrees a
+/// turn each, |zero_tick| at most a turn. Error: invalid_argument.
+[[nodiscard]] Status check(const Motion& motion, const SensorModel& model);
+
 /// How well a model explains points.
 struct SensorResiduals {
   std::size_t points = 0;        ///< finite points with a range

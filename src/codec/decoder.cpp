@@ -1,21 +1,30 @@
 #include "sweepcast/decoder.hpp"
 
+#include <algorithm>
+
+#include "codec/beam/codec.hpp"
 #include "codec/rcpcc/codec.hpp"
 
 namespace sweepcast {
 
 struct Decoder::State {
+  explicit State(const DecoderOptions& decoder_options) : options(decoder_options) {}
+
   DecoderOptions options;
   FrameHeader header;
+  beam::Decoder beam;
   rcpcc::Decoder rcpcc;
 
   Status decode(std::span<const std::byte> frame, PointCloud& cloud) {
     if (Status status = parse_frame_header(frame, header); !status) return status;
-    if (header.frame_size > frame.size()) {
-      return fail(ErrorCode::truncated, "the frame is cut short");
-    }
     if (header.counts.points_coded > options.max_points) {
       return fail(ErrorCode::limit, "the frame holds more points than the decoder may give");
+    }
+    if (header.codec == CodecId::beam) {
+      return beam.decode(frame, header, options.max_layers, cloud);
+    }
+    if (header.frame_size > frame.size()) {
+      return fail(ErrorCode::truncated, "the frame is cut short");
     }
     if (header.codec != CodecId::rcpcc) {
       return fail(ErrorCode::unsupported, "the frame's codec is unknown; update this program");
@@ -24,8 +33,7 @@ struct Decoder::State {
   }
 };
 
-Decoder::Decoder(const DecoderOptions& options)
-    : state_(std::make_unique<State>(State{options, {}, {}})) {}
+Decoder::Decoder(const DecoderOptions& options) : state_(std::make_unique<State>(options)) {}
 Decoder::Decoder(Decoder&&) noexcept = default;
 Decoder& Decoder::operator=(Decoder&&) noexcept = default;
 Decoder::~Decoder() = default;

@@ -1,5 +1,6 @@
 #include "sweepcast/encoder.hpp"
 
+#include "codec/beam/codec.hpp"
 #include "codec/frame_layout.hpp"
 #include "codec/rcpcc/codec.hpp"
 
@@ -26,9 +27,12 @@ Status check(const CloudView& cloud, const SweepInfo& info) {
 
 struct Encoder::State {
   explicit State(const EncoderOptions& options)
-      : codec(options.codec), rcpcc(options.rcpcc, options.crop) {}
+      : codec(options.codec),
+        beam(options.beam, options.crop),
+        rcpcc(options.rcpcc, options.crop) {}
 
   CodecId codec;
+  beam::Encoder beam;
   rcpcc::Encoder rcpcc;
   PartList parts;
   SweepCounts counts;
@@ -41,11 +45,11 @@ Encoder& Encoder::operator=(Encoder&&) noexcept = default;
 Encoder::~Encoder() = default;
 
 Result<Encoder> Encoder::create(const EncoderOptions& options) {
-  if (options.codec != CodecId::rcpcc) {
+  if (options.codec != CodecId::rcpcc && options.codec != CodecId::beam) {
     return fail(ErrorCode::unsupported, "there is no encoder for this codec");
   }
-  if (const Status status = rcpcc::check(options.rcpcc); !status) {
-    return tl::unexpected(status.error());
+  for (const Status& status : {rcpcc::check(options.rcpcc), beam::check(options.beam)}) {
+    if (!status) return tl::unexpected(status.error());
   }
   return Encoder(std::make_unique<State>(options));
 }
@@ -53,7 +57,9 @@ Result<Encoder> Encoder::create(const EncoderOptions& options) {
 Result<std::span<const std::byte>> Encoder::encode(const CloudView& cloud, const SweepInfo& info) {
   if (const Status status = check(cloud, info); !status) return tl::unexpected(status.error());
   State& s = *state_;
-  if (const Status status = s.rcpcc.encode(cloud, s.parts, s.counts); !status) {
+  if (s.codec == CodecId::beam) {
+    s.beam.encode(cloud, s.parts, s.counts);
+  } else if (const Status status = s.rcpcc.encode(cloud, s.parts, s.counts); !status) {
     return tl::unexpected(status.error());
   }
   write_frame(s.codec, info, s.counts, s.parts, s.frame);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "codec/beam/codec.hpp"
 #include "codec/frame_layout.hpp"
 #include "codec/rcpcc/codec.hpp"
 #include "core/bytes.hpp"
@@ -45,11 +46,23 @@ Status read_head(ByteReader& in, FrameHeader& header) {
 }  // namespace
 
 std::string_view name(CodecId codec) noexcept {
-  return codec == CodecId::rcpcc ? "rcpcc" : "unknown";
+  switch (codec) {
+    case CodecId::rcpcc:
+      return "rcpcc";
+    case CodecId::beam:
+      return "beam";
+  }
+  return "unknown";
 }
 
 std::string_view part_name(CodecId codec, std::uint8_t kind) noexcept {
-  return codec == CodecId::rcpcc ? rcpcc::part_name(kind) : "unknown";
+  switch (codec) {
+    case CodecId::rcpcc:
+      return rcpcc::part_name(kind);
+    case CodecId::beam:
+      return beam::part_name(kind);
+  }
+  return "unknown";
 }
 
 Status parse_frame_header(std::span<const std::byte> bytes, FrameHeader& header) {

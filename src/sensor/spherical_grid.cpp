@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/trig.hpp"
+#include "sensor/crop.hpp"
 
 namespace sweepcast {
 namespace {
@@ -19,18 +20,6 @@ std::int32_t micro_degrees(double degrees) {
 
 int steps_in(std::int64_t span, std::int64_t step) {
   return static_cast<int>((span + step - 1) / step);
-}
-
-bool inside(const Box& box, float x, float y, float z) {
-  return x >= box.min_x && x <= box.max_x && y >= box.min_y && y <= box.max_y && z >= box.min_z &&
-         z <= box.max_z;
-}
-
-bool is_cropped(const Crop& crop, float x, float y, float z, float range) {
-  if (range < crop.min_range) return true;
-  if (crop.max_range > 0.0F && range > crop.max_range) return true;
-  if (crop.keep && !inside(*crop.keep, x, y, z)) return true;
-  return crop.robot && inside(*crop.robot, x, y, z);
 }
 
 }  // namespace

@@ -1,0 +1,433 @@
+#include "codec/beam/codec.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "codec/beam/model_bytes.hpp"
+#include "core/crc32.hpp"
+#include "sensor/beam_geometry.hpp"
+#include "sensor/crop.hpp"
+
+namespace sweepcast::beam {
+namespace {
+
+// Base of the lattice: every 4th row, every 16th column.
+constexpr int kBaseRows = 4;
+constexpr int kBaseCols = 16;
+
+// Share of the error bound that angles may take, the rest being the ranges'. Errors across and
+// along a beam are at right angles, so that a tenth of the bound costs the ranges half a per cent
+// of it.
+constexpr double kAngularShare = 0.15;
+
+// Points on the extras' lattice are at most this far from it, in steps: half a cube's diagonal.
+constexpr double kHalfDiagonal = 0.8660254037844387;
+
+constexpr std::uint64_t kMostPoints = std::uint64_t{1} << 24;
+constexpr std::int32_t kLargestStep = 1 << 20;
+
+std::uint64_t as_unsigned(std::int64_t value) {
+  return static_cast<std::uint64_t>(value);
+}
+
+// Half the step of ranges, metres.
+double range_error(const BeamOptions& options) {
+  return options.max_error_m * std::sqrt(1.0 - kAngularShare * kAngularShare);
+}
+
+std::int32_t range_step(const BeamOptions& options) {
+  return std::max(1, static_cast<std::int32_t>(2.0 * range_error(options) * kRangeUnits));
+}
+
+// The step of the extras' lattice, 0.1 mm.
+std::int32_t extras_step(const BeamOptions& options) {
+  return std::max(1, static_cast<std::int32_t>(options.max_error_m / kHalfDiagonal * kRangeUnits));
+}
+
+void write_motion(const Motion& motion, ByteWriter& out) {
+  for (const std::int32_t v : motion.translation) out.put_signed(v);
+  for (const std::int32_t v : motion.rotation) out.put_signed(v);
+  out.put_varint(as_unsigned(motion.zero_tick));
+}
+
+Motion read_motion(ByteReader& in) {
+  Motion motion;
+  for (std::int32_t& v : motion.translation) v = static_cast<std::int32_t>(in.get_signed());
+  for (std::int32_t& v : motion.rotation) v = static_cast<std::int32_t>(in.get_signed());
+  motion.zero_tick = static_cast<std::int32_t>(in.get_varint(kMaxTicks));
+  return motion;
+}
+
+// Column of the coded image in which cell (row, column 0) of the beam image stands.
+std::vector<std::int32_t> first_columns(const SensorModel& model, const BeamImage& image) {
+  std::vector<std::int32_t> shift;
+  column_shifts(model, image.firing_tick, shift);
+  for (std::int32_t& s : shift) {
+    s %= image.cols;
+    if (s < 0) s += image.cols;
+  }
+  return shift;
+}
+
+void set_plan(const SensorModel& model, int cols, std::int32_t step, int base_rows, int base_cols,
+              LayerPlan& plan) {
+  plan.rows = static_cast<int>(model.beams.size());
+  plan.cols = cols;
+  plan.step = step;
+  plan.lattice = make_lattice(base_rows, base_cols);
+  plan.elevation.clear();
+  for (const Beam& beam : model.beams) plan.elevation.push_back(beam.tan_elevation);
+}
+
+// Copies rows between the beam image and the coded one, turned by each row's first column.
+template <class Copy>
+void for_each_aligned(const SensorModel& model, const BeamImage& image, Copy copy) {
+  const std::vector<std::int32_t> first = first_columns(model, image);
+  for (int row = 0; row < image.rows; ++row) {
+    int aligned = first[static_cast<std::size_t>(row)];
+    const std::size_t begin = static_cast<std::size_t>(row) * static_cast<std::size_t>(image.cols);
+    for (int col = 0; col < image.cols; ++col) {
+      copy(row, begin + static_cast<std::size_t>(col), begin + static_cast<std::size_t>(aligned));
+      if (++aligned == image.cols) aligned = 0;
+    }
+  }
+}
+
+}  // namespace
+
+std::string_view part_name(std::uint8_t kind) noexcept {
+  if (kind >= static_cast<std::uint8_t>(Part::layer)) return "layer";
+  switch (static_cast<Part>(kind)) {
+    case Part::model:
+      return "model";
+    case Part::grid:
+      return "grid";
+    case Part::firings:
+      return "firings";
+    case Part::extras:
+      return "extras";
+    case Part::layer:
+      break;
+  }
+  return "unknown";
+}
+
+Status check(const BeamOptions& options) {
+  if (!(options.max_error_m >= 0.001 && options.max_error_m <= 2.0)) {
+    return fail(ErrorCode::invalid_argument, "the maximum error is " +
+                                                 std::to_string(options.max_error_m) +
+                                                 "; it must lie between 0.001 and 2 m");
+  }
+  if (options.model_interval < 1) {
+    return fail(ErrorCode::invalid_argument, "the model interval must be at least 1 frame");
+  }
+  return {};
+}
+
+Encoder::Encoder(const BeamOptions& options, const Crop& crop) : options_(options), crop_(crop) {}
+
+// One sweep's way: sensor model, range image, layers of ranges; what has no cell goes aside.
+void Encoder::encode(const CloudView& cloud, PartList& parts, SweepCounts& counts) {
+  counts = {};
+  counts.points_in = static_cast<std::uint32_t>(cloud.size);
+  parts.clear();
+  if (!model_ && sweeps_to_wait_-- == 0) learn_model(cloud);
+  project(cloud, counts);
+  write_model_part(parts);
+  write_grid(parts);
+  write_extras(cloud, parts, counts);
+  if (image_.cols == 0) return;
+
+  plan_layers();
+  layers_.begin(plan_);
+  for (int layer = 0; layer < LayerCoder::layers(plan_); ++layer) {
+    parts.begin(static_cast<std::uint8_t>(static_cast<int>(Part::layer) + layer));
+    layers_.encode(layer, {range_, azimuth_, height_}, parts.bytes());
+  }
+  counts.points_coded += static_cast<std::uint32_t>(
+      range_.size() - as_unsigned(std::count(range_.begin(), range_.end(), 0)));
+}
+
+void Encoder::learn_model(const CloudView& cloud) {
+  const auto estimate = estimate_sensor_model(std::span(&cloud, 1));
+  if (!estimate) {
+    // Looking takes seconds: do it less and less often for a sensor that seems to have no beams.
+    patience_ = std::min(2 * patience_, 1024);
+    sweeps_to_wait_ = patience_;
+    return;
+  }
+  model_ = estimate->model;
+  projector_.emplace(*model_);
+  unprojector_.emplace(*model_);
+  frames_since_model_ = options_.model_interval;
+  ByteWriter out(bytes_);
+  write_model(*model_, out);
+  model_id_ = crc32(bytes_);
+}
+
+void Encoder::project(const CloudView& cloud, SweepCounts& counts) {
+  chosen_.clear();
+  for (std::uint32_t i = 0; i < cloud.size; ++i) {
+    const auto x = static_cast<float>(cloud.x.at(i));
+    const auto y = static_cast<float>(cloud.y.at(i));
+    const auto z = static_cast<float>(cloud.z.at(i));
+    const float range = std::sqrt(x * x + y * y + z * z);
+    if (range > 0.0F && is_cropped(crop_, x, y, z, range)) {
+      ++counts.cropped;
+    } else {
+      chosen_.push_back(i);
+    }
+  }
+  if (!model_) {
+    image_ = {};
+    for (const std::uint32_t i : chosen_) image_.extras.push_back({i, ExtraReason::stray});
+    return;
+  }
+  BeamGridOptions grid;
+  grid.max_error_m = kAngularShare * options_.max_error_m;
+  projector_->project(cloud, chosen_, grid, image_);
+  keep_bound(cloud);
+}
+
+// Moves to the extras what would miss the bound once its range is rounded, and what is too near.
+void Encoder::keep_bound(const CloudView& cloud) {
+  unprojector_->unproject(image_, placed_);
+  const std::vector<BeamGeometry> beams = beam_geometry(*model_);
+  const double along = 0.5 * range_step(options_) / kRangeUnits;
+  const double bound = options_.max_error_m * options_.max_error_m;
+  std::size_t at = 0;
+  for (std::size_t cell = 0; cell < image_.cells(); ++cell) {
+    if (image_.range[cell] == 0) continue;
+    const std::uint32_t point = image_.point[cell];
+    const double px = placed_.x[at];
+    const double py = placed_.y[at];
+    const double dx = px - cloud.x.at(point);
+    const double dy = py - cloud.y.at(point);
+    const double dz = double{placed_.z[at]} - cloud.z.at(point);
+    ++at;
+    // The rounding moves the point along its beam by up to half a step, either way.
+    const BeamGeometry& beam = beams[cell / static_cast<std::size_t>(image_.cols)];
+    const double rho = std::sqrt(px * px + py * py);
+    const double inward =
+        ((dx * px + dy * py) / (rho > 1e-4 ? rho : 1.0) + dz * beam.tan) * beam.inverse_slant;
+    const double worst =
+        dx * dx + dy * dy + dz * dz + along * along + 2.0 * along * std::abs(inward);
+    if (worst <= bound && image_.range[cell] >= kNearest && image_.range[cell] <= kFarthest) {
+      continue;
+    }
+    image_.range[cell] = 0;
+    image_.extras.push_back({point, ExtraReason::misfit});
+  }
+}
+
+void Encoder::plan_layers() {
+  set_plan(*model_, image_.cols, range_step(options_), kBaseRows, kBaseCols, plan_);
+  const bool residuals = !image_.azimuth_residual.empty();
+  range_.resize(image_.cells());
+  azimuth_.resize(residuals ? image_.cells() : 0);
+  height_.resize(residuals ? image_.cells() : 0);
+  for_each_aligned(*model_, image_, [&](int /*row*/, std::size_t cell, std::size_t aligned) {
+    range_[aligned] = image_.range[cell];
+    if (!residuals) return;
+    azimuth_[aligned] = image_.azimuth_residual[cell];
+    height_[aligned] = image_.height_residual[cell];
+  });
+}
+
+void Encoder::write_model_part(PartList& parts) {
+  if (!model_ || frames_since_model_ < options_.model_interval) {
+    ++frames_since_model_;
+    return;
+  }
+  frames_since_model_ = 1;
+  ByteWriter out(bytes_);
+  write_model(*model_, out);
+  parts.begin(static_cast<std::uint8_t>(Part::model));
+  parts.bytes().insert(parts.bytes().end(), bytes_.begin(), bytes_.end());
+}
+
+void Encoder::write_grid(PartList& parts) {
+  ByteWriter out(bytes_);
+  out.put_varint(as_unsigned(image_.cols));
+  if (image_.cols > 0) {
+    out.put(model_id_);
+    out.put_varint(as_unsigned(range_step(options_)));
+    out.put(static_cast<std::uint8_t>(kBaseRows));
+    out.put(static_cast<std::uint8_t>(kBaseCols));
+    const bool residuals = !image_.azimuth_residual.empty();
+    out.put_varint(residuals ? as_unsigned(image_.azimuth_divisor) : 0U);
+    out.put_varint(as_unsigned(image_.height_step));
+    out.put(static_cast<std::uint8_t>(image_.motion ? 1 : 0));
+    if (image_.motion) write_motion(*image_.motion, out);
+  }
+  parts.begin(static_cast<std::uint8_t>(Part::grid));
+  parts.bytes().insert(parts.bytes().end(), bytes_.begin(), bytes_.end());
+  if (image_.cols == 0) return;
+  parts.begin(static_cast<std::uint8_t>(Part::firings));
+  write_firings(image_.firing_tick, parts.bytes());
+}
+
+void Encoder::write_extras(const CloudView& cloud, PartList& parts, SweepCounts& counts) {
+  lattice_.clear();
+  const std::int32_t step = extras_step(options_);
+  const double per_metre = double{kRangeUnits} / step;
+  for (const ExtraPoint& extra : image_.extras) {
+    if (extra.reason == ExtraReason::not_finite) {
+      ++counts.not_finite;
+      continue;
+    }
+    LatticePoint place{};
+    bool inside = true;
+    const double xyz[] = {cloud.x.at(extra.point), cloud.y.at(extra.point),
+                          cloud.z.at(extra.point)};
+    if (!(std::isfinite(xyz[0]) && std::isfinite(xyz[1]) && std::isfinite(xyz[2]))) {
+      ++counts.not_finite;
+      continue;
+    }
+    if (xyz[0] == 0.0 && xyz[1] == 0.0 && xyz[2] == 0.0) {
+      ++counts.zero_range;
+      continue;
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double steps = std::floor(xyz[axis] * per_metre + 0.5);
+      inside = inside && std::abs(steps) < kLatticeLimit;
+      place[axis] = inside ? static_cast<std::int32_t>(steps) : 0;
+    }
+    if (inside) {
+      lattice_.push_back(place);
+    } else {
+      ++counts.out_of_view;
+    }
+  }
+  counts.points_coded += static_cast<std::uint32_t>(lattice_.size());
+  if (lattice_.empty()) return;
+  ByteWriter out(bytes_);
+  out.put_varint(lattice_.size());
+  out.put_varint(as_unsigned(step));
+  parts.begin(static_cast<std::uint8_t>(Part::extras));
+  parts.bytes().insert(parts.bytes().end(), bytes_.begin(), bytes_.end());
+  write_octree(lattice_, parts.bytes());
+}
+
+// The same way back.
+Status Decoder::decode(std::span<const std::byte> frame, const FrameHeader& header, int layers,
+                       PointCloud& cloud) {
+  cloud.clear();
+  if (Status status = read_model_part(frame, header); !status) return status;
+  const auto grid = checked_part(frame, header, static_cast<std::uint8_t>(Part::grid));
+  if (!grid) return tl::unexpected(grid.error());
+  if (!read_grid(*grid)) return fail(ErrorCode::corrupt, "the frame's grid cannot be right");
+  if (image_.cols > 0) {
+    if (Status status = read_layers(frame, header, layers); !status) return status;
+    unprojector_->unproject(image_, cloud);
+  }
+  const bool has_extras = std::any_of(
+      header.parts.begin(), header.parts.end(),
+      [](const FramePart& part) { return part.kind == static_cast<std::uint8_t>(Part::extras); });
+  if (!has_extras) return {};
+  const auto extras = checked_part(frame, header, static_cast<std::uint8_t>(Part::extras));
+  if (!extras) return tl::unexpected(extras.error());
+  if (!read_extras(*extras, cloud)) {
+    return fail(ErrorCode::corrupt, "the frame's extra points cannot be right");
+  }
+  return {};
+}
+
+Status Decoder::read_model_part(std::span<const std::byte> frame, const FrameHeader& header) {
+  const bool present = std::any_of(
+      header.parts.begin(), header.parts.end(),
+      [](const FramePart& part) { return part.kind == static_cast<std::uint8_t>(Part::model); });
+  if (!present) return {};
+  const auto bytes = checked_part(frame, header, static_cast<std::uint8_t>(Part::model));
+  if (!bytes) return tl::unexpected(bytes.error());
+  const std::uint32_t id = crc32(*bytes);
+  if (model_id_ == id) return {};
+  ByteReader in(*bytes);
+  model_id_.reset();
+  if (!read_model(in, model_)) {
+    return fail(ErrorCode::corrupt, "the frame's sensor model cannot be right");
+  }
+  unprojector_.emplace(model_);
+  model_id_ = id;
+  return {};
+}
+
+bool Decoder::read_grid(std::span<const std::byte> bytes) {
+  ByteReader in(bytes);
+  image_.cols = static_cast<int>(in.get_varint(kMaxTicks));
+  if (image_.cols == 0) return in.ok();
+  const auto id = in.get<std::uint32_t>();
+  step_ = static_cast<std::int32_t>(in.get_varint(kLargestStep));
+  const int base_rows = in.get<std::uint8_t>();
+  const int base_cols = in.get<std::uint8_t>();
+  image_.azimuth_divisor = static_cast<std::int32_t>(in.get_varint(kMaxTicks));
+  image_.height_step = static_cast<std::int32_t>(in.get_varint(kLargestStep));
+  image_.motion.reset();
+  if (in.get<std::uint8_t>() != 0) image_.motion = read_motion(in);
+  const auto is_stride = [](int v) { return v > 0 && v <= 16 && (v & (v - 1)) == 0; };
+  if (!in.ok() || step_ == 0 || !is_stride(base_rows) || !is_stride(base_cols)) return false;
+  known_model_ = model_id_ == id;
+  if (!known_model_) return true;
+  image_.rows = static_cast<int>(model_.beams.size());
+  if (image_.cells() > kMostPoints || image_.cols > model_.ticks_per_turn) return false;
+  set_plan(model_, image_.cols, step_, base_rows, base_cols, plan_);
+  return true;
+}
+
+Status Decoder::read_layers(std::span<const std::byte> frame, const FrameHeader& header,
+                            int layers) {
+  if (!known_model_) {
+    return fail(ErrorCode::unsupported,
+                "the frame's sensor model came with an earlier frame; decode from there");
+  }
+  const auto firings = checked_part(frame, header, static_cast<std::uint8_t>(Part::firings));
+  if (!firings) return tl::unexpected(firings.error());
+  image_.firing_tick.resize(static_cast<std::size_t>(image_.cols));
+  if (!read_firings(*firings, model_.ticks_per_turn, image_.firing_tick)) {
+    return fail(ErrorCode::corrupt, "the frame's firings cannot be right");
+  }
+  const bool residuals = image_.azimuth_divisor != 0;
+  for (auto* plane : {&azimuth_, &height_}) plane->assign(residuals ? image_.cells() : 0, 0);
+  layers_.begin(plan_);
+  layers = std::clamp(layers, 1, LayerCoder::layers(plan_));
+  for (int layer = 0; layer < layers; ++layer) {
+    const auto bytes = checked_part(
+        frame, header, static_cast<std::uint8_t>(static_cast<int>(Part::layer) + layer));
+    if (!bytes && bytes.error().code == ErrorCode::truncated && layer > 0) break;
+    if (!bytes) return tl::unexpected(bytes.error());
+    if (!layers_.decode(layer, *bytes, {azimuth_, height_})) {
+      return fail(ErrorCode::corrupt, "a layer of the frame ends too early");
+    }
+  }
+
+  image_.range.resize(image_.cells());
+  image_.azimuth_residual.resize(azimuth_.size());
+  image_.height_residual.resize(height_.size());
+  for_each_aligned(model_, image_, [&](int row, std::size_t cell, std::size_t aligned) {
+    const auto col = static_cast<int>(aligned % static_cast<std::size_t>(image_.cols));
+    image_.range[cell] = layers_.image().at(row, col)->range;
+    if (!residuals) return;
+    image_.azimuth_residual[cell] = azimuth_[aligned];
+    image_.height_residual[cell] = height_[aligned];
+  });
+  return {};
+}
+
+bool Decoder::read_extras(std::span<const std::byte> bytes, PointCloud& cloud) {
+  ByteReader in(bytes);
+  const std::uint64_t count = in.get_varint(kMostPoints);
+  const double step = static_cast<double>(in.get_varint(kLargestStep)) / kRangeUnits;
+  if (!in.ok()) return false;
+  // A point takes at least a hundredth of a bit, whatever the models have learnt.
+  lattice_.resize(count);
+  if (!read_octree(in.get_bytes(in.remaining()), lattice_)) return false;
+  for (const LatticePoint& place : lattice_) {
+    cloud.x.push_back(static_cast<float>(place[0] * step));
+    cloud.y.push_back(static_cast<float>(place[1] * step));
+    cloud.z.push_back(static_cast<float>(place[2] * step));
+  }
+  return true;
+}
+
+}  // namespace sweepcast::beam

@@ -1,0 +1,100 @@
+// Codec beam: the sensor's own geometry. A sweep is a sensor model (sent rarely), a list of firings
+// and one range for each point, coded coarse to fine within an error bound.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "codec/beam/octree.hpp"
+#include "codec/beam/range_layers.hpp"
+#include "codec/frame_layout.hpp"
+#include "sensor/beam_grid.hpp"
+#include "sweepcast/cloud.hpp"
+#include "sweepcast/encoder.hpp"
+#include "sweepcast/sensor_model.hpp"
+
+namespace sweepcast::beam {
+
+/// The parts of a frame. Layers come last, coarsest first, so that a frame may be cut between them.
+enum class Part : std::uint8_t {
+  model = 1,    ///< the sensor model; in the first frame and from time to time
+  grid = 2,     ///< which model, steps, numbers of rows and columns
+  firings = 3,  ///< the ticks of the columns
+  extras = 4,   ///< points without a cell
+  layer = 16,   ///< the first layer of ranges; the others follow with 17, 18, ...
+};
+
+[[nodiscard]] std::string_view part_name(std::uint8_t kind) noexcept;
+
+[[nodiscard]] Status check(const BeamOptions& options);
+
+/// Makes parts of sweeps; keeps its buffers, and the sensor's model from sweep to sweep.
+class Encoder {
+ public:
+  /// Options must have passed `check`.
+  Encoder(const BeamOptions& options, const Crop& crop);
+
+  /// Fills `parts` and `counts`. Every finite point with a range decodes within the error bound.
+  void encode(const CloudView& cloud, PartList& parts, SweepCounts& counts);
+
+ private:
+  void learn_model(const CloudView& cloud);
+  void project(const CloudView& cloud, SweepCounts& counts);
+  void keep_bound(const CloudView& cloud);
+  void plan_layers();
+  void write_model_part(PartList& parts);
+  void write_grid(PartList& parts);
+  void write_extras(const CloudView& cloud, PartList& parts, SweepCounts& counts);
+
+  BeamOptions options_;
+  Crop crop_;
+  std::optional<SensorModel> model_;
+  int sweeps_to_wait_ = 0;  ///< before looking for a model again
+  int patience_ = 4;
+  std::optional<BeamProjector> projector_;
+  std::optional<BeamUnprojector> unprojector_;
+  int frames_since_model_ = 0;
+  std::uint32_t model_id_ = 0;
+  std::vector<std::uint32_t> chosen_;  ///< points that the crop leaves
+  BeamImage image_;
+  PointCloud placed_;
+  LayerPlan plan_;
+  std::vector<std::int32_t> range_, azimuth_, height_;  ///< the image, columns aligned by azimuth
+  LayerCoder layers_;
+  std::vector<LatticePoint> lattice_;
+  std::vector<std::byte> bytes_;
+};
+
+/// Makes clouds of frames; keeps the sensor models that it has seen.
+class Decoder {
+ public:
+  /// Fills `cloud` from a frame whose head is parsed, from its first `layers` layers.
+  /// Errors: truncated, corrupt, limit, unsupported (the frame's model came with an earlier frame
+  /// that this decoder has not seen).
+  [[nodiscard]] Status decode(std::span<const std::byte> frame, const FrameHeader& header,
+                              int layers, PointCloud& cloud);
+
+ private:
+  [[nodiscard]] Status read_model_part(std::span<const std::byte> frame, const FrameHeader& header);
+  [[nodiscard]] bool read_grid(std::span<const std::byte> bytes);
+  [[nodiscard]] Status read_layers(std::span<const std::byte> frame, const FrameHeader& header,
+                                   int layers);
+  [[nodiscard]] bool read_extras(std::span<const std::byte> bytes, PointCloud& cloud);
+
+  SensorModel model_;
+  std::optional<std::uint32_t> model_id_;
+  std::optional<BeamUnprojector> unprojector_;
+  bool known_model_ = false;  ///< whether the frame at hand refers to `model_`
+  std::int32_t step_ = 0;
+  BeamImage image_;
+  LayerPlan plan_;
+  std::vector<std::int32_t> azimuth_, height_;  ///< residuals, columns aligned by azimuth
+  LayerCoder layers_;
+  std::vector<LatticePoint> lattice_;
+};
+
+}  // namespace sweepcast::beam

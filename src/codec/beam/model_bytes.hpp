@@ -1,0 +1,27 @@
+// A sensor model, firings and motion as bytes.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/bytes.hpp"
+#include "sweepcast/sensor_model.hpp"
+
+namespace sweepcast::beam {
+
+/// Writes a model that has passed `check`; beams as differences from the one before.
+void write_model(const SensorModel& model, ByteWriter& out);
+
+/// The inverse; false where the bytes end early or the model does not pass `check`.
+[[nodiscard]] bool read_model(ByteReader& in, SensorModel& model);
+
+/// Writes increasing ticks. They are nearly periodic: what the decoder has seen follow the last
+/// few steps is packed well.
+void write_firings(const std::vector<std::int32_t>& ticks, std::vector<std::byte>& out);
+
+/// The inverse: fills `ticks`, whose size says how many. False unless they increase and are below
+/// `ticks_per_turn`.
+[[nodiscard]] bool read_firings(std::span<const std::byte> bytes, std::int32_t ticks_per_turn,
+                                std::vector<std::int32_t>& ticks);
+
+}  // namespace sweepcast::beam

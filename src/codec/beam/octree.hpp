@@ -1,0 +1,24 @@
+// Points that no sensor model places: quantised to a cubic lattice and coded as an octree.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace sweepcast::beam {
+
+/// A point on the lattice, in steps; each coordinate within +-2^20.
+using LatticePoint = std::array<std::int32_t, 3>;
+
+inline constexpr std::int32_t kLatticeLimit = 1 << 20;
+
+/// Sorts `points` into the order in which they will be decoded and writes them.
+void write_octree(std::vector<LatticePoint>& points, std::vector<std::byte>& out);
+
+/// The inverse. `points.size()` says how many there are; false where the bytes do not have that
+/// many.
+[[nodiscard]] bool read_octree(std::span<const std::byte> bytes, std::vector<LatticePoint>& points);
+
+}  // namespace sweepcast::beam

@@ -1,0 +1,74 @@
+// Range images as layers, coarsest first: each is a range-coded piece of bytes that adds cells.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "codec/beam/lattice.hpp"
+#include "codec/beam/neighbourhood.hpp"
+
+namespace sweepcast::beam {
+
+/// What encoder and decoder must agree on.
+struct LayerPlan {
+  int rows = 0;
+  int cols = 0;
+  std::int32_t step = 0;                ///< of ranges, 0.1 mm
+  std::vector<LatticeStep> lattice;     ///< from the base on
+  std::vector<std::int32_t> elevation;  ///< rows values: tangent of each row's beam, falling
+};
+
+/// The values of an image, row-major; the residuals are empty where there are none.
+struct LayerValues {
+  std::span<const std::int32_t> range;    ///< 0.1 mm, 0 where empty
+  std::span<const std::int32_t> azimuth;  ///< residuals, as in BeamImage
+  std::span<const std::int32_t> height;
+};
+
+/// The same, to be filled.
+struct LayerResiduals {
+  std::span<std::int32_t> azimuth;
+  std::span<std::int32_t> height;
+};
+
+/// Codes the layers of one image. Layer 0 has the base and all rows of its columns; each further
+/// layer the columns half way between. The models learn from layer to layer, so layers are coded
+/// and decoded in order; any number of the first ones decodes by itself.
+class LayerCoder {
+ public:
+  /// Begins an image: rows and columns as in `plan`, every cell unknown.
+  void begin(const LayerPlan& plan);
+
+  /// Layers of a plan.
+  [[nodiscard]] static int layers(const LayerPlan& plan);
+
+  /// Appends layer `layer` to `out`.
+  void encode(int layer, const LayerValues& values, std::vector<std::byte>& out);
+
+  /// Reads layer `layer`: ranges into `image()`, residuals into `residuals`, where it has room for
+  /// them. False where the bytes end too early to be right.
+  [[nodiscard]] bool decode(int layer, std::span<const std::byte> bytes,
+                            const LayerResiduals& residuals);
+
+  /// The cells so far.
+  [[nodiscard]] PaddedImage& image() { return image_; }
+
+  LayerCoder();
+  LayerCoder(LayerCoder&&) noexcept;
+  LayerCoder& operator=(LayerCoder&&) noexcept;
+  ~LayerCoder();
+
+ private:
+  template <class Visit>
+  void for_each_point(std::uint32_t number, Visit visit);
+
+  struct Models;
+  LayerPlan plan_;
+  PaddedImage image_;
+  std::unique_ptr<Models> models_;
+};
+
+}  // namespace sweepcast::beam
