@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "core/trig.hpp"
 #include "sweepcast/sensor_model.hpp"
 
 namespace sweepcast {
@@ -19,5 +20,12 @@ struct BeamGeometry {
 };
 
 [[nodiscard]] std::vector<BeamGeometry> beam_geometry(const SensorModel& model);
+
+/// Turns by which a beam's lateral offset turns its points at a horizontal distance: the arc sine
+/// of their ratio, to the third order.
+[[nodiscard]] inline double lateral_turns(const BeamGeometry& beam, double rho) {
+  const double q = beam.lateral_m / (rho > 1e-4 ? rho : 1.0);
+  return (q + q * q * q / 6.0) / (2.0 * kPi);
+}
 
 }  // namespace sweepcast

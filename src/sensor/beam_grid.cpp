@@ -28,19 +28,6 @@ std::vector<BeamLine> lines_of(const std::vector<BeamGeometry>& beams) {
   return lines;
 }
 
-// Turns by which a beam's lateral offset turns its points at a horizontal distance.
-double lateral_turns(const BeamGeometry& beam, double rho) {
-  const double q = beam.lateral_m / (rho > 1e-4 ? rho : 1.0);
-  return (q + q * q * q / 6.0) / kTurn;  // arc sine
-}
-
-// When a point was measured, turns from the motion's zero.
-double point_time(const Motion& motion, const SensorModel& model, const BeamGeometry& beam,
-                  int tick, double aside_turns) {
-  return motion_time(tick, motion, model.ticks_per_turn) + beam.phase / model.ticks_per_turn +
-         aside_turns;
-}
-
 // What projection needs of a beam, in floats, side by side.
 struct FloatBeam {
   float tan, inverse_slant, height, lateral, phase;
@@ -217,8 +204,9 @@ void BeamProjector::State::drop_mistimed(const Motion& motion) {
   for (std::size_t i = 0; i < places.size(); ++i) {
     if (places[i].tick < 0) continue;
     const BeamGeometry& g = geometry[places[i].beam];
-    const double time = point_time(motion, model, g, places[i].tick + beams[places[i].beam].lag,
-                                   lateral_turns(g, samples[i].rho));
+    const std::int32_t tick = places[i].tick + beams[places[i].beam].lag;
+    const double time = motion_time(tick, motion, model.ticks_per_turn) +
+                        g.phase / model.ticks_per_turn + lateral_turns(g, samples[i].rho);
     if (std::abs(time - times[i]) < 0.25) continue;
     places[i].tick = -1;
     reasons[i] = ExtraReason::stray;
@@ -355,95 +343,6 @@ void BeamProjector::project(const CloudView& cloud, std::span<const std::uint32_
   s.subset = points;
   s.fill(options, image);
   s.subset = {};
-}
-
-BeamUnprojector::BeamUnprojector(const SensorModel& model)
-    : model_(model), beams_(beam_geometry(model)) {}
-
-void BeamUnprojector::unproject(const BeamImage& image, PointCloud& cloud) {
-  const auto cols = static_cast<std::size_t>(image.cols);
-  sin_.resize(cols);
-  cos_.resize(cols);
-  for (std::size_t j = 0; j < cols; ++j) {
-    const SinCos at = sin_cos(kTurn * image.firing_tick[j] / model_.ticks_per_turn);
-    sin_[j] = at.sin;
-    cos_[j] = at.cos;
-  }
-  const auto cells = std::count_if(image.range.begin(), image.range.end(),
-                                   [](std::int32_t range) { return range != 0; });
-  cloud.clear();
-  cloud.resize_xyz(static_cast<std::size_t>(cells));
-  for (auto* column : {&x_, &y_, &z_}) column->resize(cols);
-  std::size_t count = 0;
-  for (int k = 0; k < image.rows; ++k) {
-    const std::int32_t* range = image.range.data() + static_cast<std::size_t>(k) * cols;
-    decode_row(image, k);
-    for (std::size_t j = 0; j < cols; ++j) {
-      if (range[j] == 0) continue;
-      cloud.x[count] = x_[j];
-      cloud.y[count] = y_[j];
-      cloud.z[count] = z_[j];
-      ++count;
-    }
-  }
-}
-
-// All cells of a row, empty ones too: no branches, so that it vectorises.
-void BeamUnprojector::decode_row(const BeamImage& image, int k) {
-  const auto cols = static_cast<std::size_t>(image.cols);
-  const std::size_t first = static_cast<std::size_t>(k) * cols;
-  const std::int32_t* range = image.range.data() + first;
-  const BeamGeometry& beam = beams_[static_cast<std::size_t>(k)];
-  const SinCos turn = sin_cos(beam.azimuth);
-  const double rho_per_range = beam.inverse_slant / kRangeUnits;
-  for (std::size_t j = 0; j < cols; ++j) {
-    const double rho = range[j] * rho_per_range;
-    // Sine of the angle by which the lateral offset turns the point; at most 1.
-    const double ratio = beam.lateral_m / (rho > 1e-4 ? rho : 1.0);
-    const double aside = ratio > 1.0 ? 1.0 : (ratio < -1.0 ? -1.0 : ratio);
-    const double ahead = std::sqrt(1.0 - aside * aside);
-    const double c = cos_[j] * turn.cos - sin_[j] * turn.sin;
-    const double s = sin_[j] * turn.cos + cos_[j] * turn.sin;
-    x_[j] = static_cast<float>(rho * (c * ahead - s * aside));
-    y_[j] = static_cast<float>(rho * (s * ahead + c * aside));
-    z_[j] = static_cast<float>(rho * beam.tan + beam.height_m);
-  }
-  if (!image.azimuth_residual.empty()) add_residuals(image, k);
-  if (image.motion) redo_motion(image, k);
-}
-
-void BeamUnprojector::add_residuals(const BeamImage& image, int k) {
-  const auto cols = static_cast<std::size_t>(image.cols);
-  const std::size_t first = static_cast<std::size_t>(k) * cols;
-  const double unit = kTurn / (static_cast<double>(model_.ticks_per_turn) * image.azimuth_divisor);
-  const double step = static_cast<double>(image.height_step) / kLengthUnits;
-  for (std::size_t j = 0; j < cols; ++j) {
-    if (image.range[first + j] == 0) continue;
-    if (const std::int32_t residual = image.azimuth_residual[first + j]; residual != 0) {
-      const SinCos turn = sin_cos(residual * unit);
-      const double x = x_[j];
-      const double y = y_[j];
-      x_[j] = static_cast<float>(x * turn.cos - y * turn.sin);
-      y_[j] = static_cast<float>(y * turn.cos + x * turn.sin);
-    }
-    z_[j] = static_cast<float>(z_[j] + image.height_residual[first + j] * step);
-  }
-}
-
-void BeamUnprojector::redo_motion(const BeamImage& image, int k) {
-  const auto cols = static_cast<std::size_t>(image.cols);
-  const std::int32_t* range = image.range.data() + static_cast<std::size_t>(k) * cols;
-  const BeamGeometry& beam = beams_[static_cast<std::size_t>(k)];
-  const std::int32_t lag = model_.beams[static_cast<std::size_t>(k)].lag;
-  const Twist<double> twist(*image.motion);
-  for (std::size_t j = 0; j < cols; ++j) {
-    const double aside = lateral_turns(beam, range[j] * beam.inverse_slant / kRangeUnits);
-    const double time = point_time(*image.motion, model_, beam, image.firing_tick[j] + lag, aside);
-    const auto q = twist.redo({x_[j], y_[j], z_[j]}, time);
-    x_[j] = static_cast<float>(q[0]);
-    y_[j] = static_cast<float>(q[1]);
-    z_[j] = static_cast<float>(q[2]);
-  }
 }
 
 }  // namespace sweepcast

@@ -7,6 +7,7 @@
 #include "core/trig.hpp"
 #include "sensor/beam_geometry.hpp"
 #include "sensor/motion.hpp"
+#include "sensor/motion_equations.hpp"
 
 namespace sweepcast {
 namespace {
@@ -23,83 +24,6 @@ Influence influence(const std::array<double, 3>& p, double s) {
           {0, s, 0, -s * p[2], 0, s * p[0]},
           {0, 0, s, s * p[1], -s * p[0], 0}};
 }
-
-// Normal equations of the twist with, for each group of residuals, two numbers of its own that are
-// eliminated: those of `rho` and of 1. For heights they are a beam's tangent and height, for
-// azimuths (sideways, in metres) its azimuth offset and lateral offset.
-class TwistEquations {
- public:
-  explicit TwistEquations(std::size_t groups) : own_(groups) {}
-
-  void add(std::size_t group, double weight, double rho, double residual,
-           const std::array<double, 6>& slope) {
-    Own& own = own_[group];
-    own.rr += weight * rho * rho;
-    own.r += weight * rho;
-    own.w += weight;
-    for (std::size_t i = 0; i < 7; ++i) {
-      const double value = i < 6 ? slope[i] : residual;
-      own.cross_r[i] += weight * rho * value;
-      own.cross_1[i] += weight * value;
-    }
-    add(weight, residual, slope);
-  }
-
-  void add(double weight, double residual, const std::array<double, 6>& slope) {
-    std::array<double, 7> row{};
-    std::copy(slope.begin(), slope.end(), row.begin());
-    row[6] = residual;
-    for (std::size_t i = 0; i < 7; ++i) {
-      for (std::size_t j = i; j < 7; ++j) sums_[i][j] += weight * row[i] * row[j];
-    }
-  }
-
-  // The step that lowers the residuals most. `eliminate`: with the groups' own numbers free.
-  // `prior`: inverse variance of each number of the twist, about `at`.
-  [[nodiscard]] TwistVector solve(bool eliminate, const TwistVector& prior, const TwistVector& at) {
-    if (eliminate) reduce();
-    std::array<std::array<double, 7>, 6> m{};
-    for (std::size_t i = 0; i < 6; ++i) {
-      for (std::size_t j = 0; j < 7; ++j) m[i][j] = i <= j ? sums_[i][j] : sums_[j][i];
-      m[i][i] += prior[i];
-      m[i][6] += prior[i] * at[i];
-    }
-    for (std::size_t i = 0; i < 6; ++i) {  // positive definite: no pivoting
-      if (!(m[i][i] > 1e-12)) continue;
-      for (std::size_t k = 0; k < 6; ++k) {
-        if (k == i) continue;
-        const double factor = m[k][i] / m[i][i];
-        for (std::size_t j = i; j < 7; ++j) m[k][j] -= factor * m[i][j];
-      }
-    }
-    TwistVector step{};
-    for (std::size_t i = 0; i < 6; ++i) step[i] = m[i][i] > 1e-12 ? -m[i][6] / m[i][i] : 0.0;
-    return step;
-  }
-
- private:
-  struct Own {
-    double rr = 0, r = 0, w = 0;
-    std::array<double, 7> cross_r{}, cross_1{};
-  };
-
-  void reduce() {
-    for (const Own& own : own_) {
-      const double det = own.rr * own.w - own.r * own.r;
-      if (!(det > 1e-9 * own.rr * own.w)) continue;
-      for (std::size_t i = 0; i < 7; ++i) {
-        const double a = (own.w * own.cross_r[i] - own.r * own.cross_1[i]) / det;
-        const double b = (own.rr * own.cross_1[i] - own.r * own.cross_r[i]) / det;
-        for (std::size_t j = i; j < 7; ++j) {
-          sums_[i][j] -= a * own.cross_r[j] + b * own.cross_1[j];
-        }
-      }
-    }
-  }
-
-  std::vector<Own> own_;
-  std::array<std::array<double, 7>, 7> sums_{};
-};
 
 // A car: 1 m and 0.1 m a turn, hundredths of a radian.
 constexpr TwistVector kPrior{1.0, 1.0, 100.0, 1e4, 1e4, 100.0};
@@ -376,9 +300,7 @@ TwistVector MotionFitter::refine(const SensorModel& model, TwistVector twist) {
       }
       equations.add(robust(height, scale), height, slope);
       if (rho < 2.0) continue;
-      const double q = beam.lateral_m / rho;
-      const double at =
-          (time_[i] - (q + q * q * q / 6.0) / kTurn) * model.ticks_per_turn - beam.phase;
+      const double at = (time_[i] - lateral_turns(beam, rho)) * model.ticks_per_turn - beam.phase;
       const double aside = wrap(at) / model.ticks_per_turn * kTurn * rho;
       for (std::size_t n = 0; n < 6; ++n) slope[n] = (p[0] * d.y[n] - p[1] * d.x[n]) / rho;
       equations.add(robust(aside, scale), aside, slope);

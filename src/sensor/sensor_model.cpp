@@ -54,6 +54,17 @@ Status check(const SensorModel& model) {
   return {};
 }
 
+Status check(const Motion& motion, const SensorModel& model) {
+  constexpr std::int32_t kMaxTranslation = 1000 * kLengthUnits;
+  constexpr std::int32_t kMaxRotation = 90 * kAngleUnits;
+  bool sound = within(motion.zero_tick, model.ticks_per_turn);
+  for (const std::int32_t v : motion.translation) sound = sound && within(v, kMaxTranslation);
+  for (const std::int32_t w : motion.rotation) sound = sound && within(w, kMaxRotation);
+  if (sound) return {};
+  return fail(ErrorCode::invalid_argument,
+              "motion: beyond 1 km, 90 degrees or a turn's ticks; no robot moves so in a sweep");
+}
+
 std::vector<BeamGeometry> beam_geometry(const SensorModel& model) {
   std::vector<BeamGeometry> beams;
   beams.reserve(model.beams.size());

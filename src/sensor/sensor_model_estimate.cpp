@@ -152,8 +152,7 @@ struct Miss {
 
 Miss miss_of(const BeamGeometry& beam, double rho, double z, double turn, int ticks) {
   const double height = z - (rho * beam.tan + beam.height_m);
-  const double q = beam.lateral_m / rho;
-  const double at = (turn - (q + q * q * q / 6.0) / kTurn) * ticks - beam.phase;
+  const double at = (turn - lateral_turns(beam, rho)) * ticks - beam.phase;
   const double off = at - std::floor(at + 0.5);
   const double aside = off / ticks * kTurn * rho;
   const double above = height * beam.inverse_slant;
