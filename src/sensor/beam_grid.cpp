@@ -122,7 +122,8 @@ void BeamProjector::State::locate_batch(std::size_t begin, std::size_t end, floa
     FiringPlace& place = places[begin + i];
     place.tick = -1;
     if (!(rho < kMaxRange && pz < kMaxRange && pz > -kMaxRange)) {
-      const bool finite = std::isfinite(rho) && std::isfinite(pz);
+      const bool finite =
+          std::isfinite(x[begin + i]) && std::isfinite(y[begin + i]) && std::isfinite(pz);
       reasons[begin + i] = finite ? ExtraReason::stray : ExtraReason::not_finite;
       continue;
     }
