@@ -1,6 +1,7 @@
 #include "codec/beam/codec.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -136,7 +137,7 @@ void Encoder::encode(const CloudView& cloud, PartList& parts, SweepCounts& count
   project(cloud, counts);
   write_model_part(parts);
   write_grid(parts);
-  write_extras(cloud, parts, counts);
+  write_extras(parts, counts);
   if (image_.cols == 0) return;
 
   plan_layers();
@@ -167,13 +168,16 @@ void Encoder::learn_model(const CloudView& cloud) {
 }
 
 void Encoder::project(const CloudView& cloud, SweepCounts& counts) {
+  x_.resize(cloud.size);
+  y_.resize(cloud.size);
+  z_.resize(cloud.size);
+  cloud.x.read(0, x_);
+  cloud.y.read(0, y_);
+  cloud.z.read(0, z_);
   chosen_.clear();
   for (std::uint32_t i = 0; i < cloud.size; ++i) {
-    const auto x = static_cast<float>(cloud.x.at(i));
-    const auto y = static_cast<float>(cloud.y.at(i));
-    const auto z = static_cast<float>(cloud.z.at(i));
-    const float range = std::sqrt(x * x + y * y + z * z);
-    if (range > 0.0F && is_cropped(crop_, x, y, z, range)) {
+    const float range = std::sqrt(x_[i] * x_[i] + y_[i] * y_[i] + z_[i] * z_[i]);
+    if (range > 0.0F && is_cropped(crop_, x_[i], y_[i], z_[i], range)) {
       ++counts.cropped;
     } else {
       chosen_.push_back(i);
@@ -186,12 +190,17 @@ void Encoder::project(const CloudView& cloud, SweepCounts& counts) {
   }
   BeamGridOptions grid;
   grid.max_error_m = kAngularShare * options_.max_error_m;
-  projector_->project(cloud, chosen_, grid, image_);
-  keep_bound(cloud);
+  const CloudView floats = CloudView::columns(x_, y_, z_);
+  if (counts.cropped == 0) {
+    projector_->project(floats, grid, image_);
+  } else {
+    projector_->project(floats, chosen_, grid, image_);
+  }
+  keep_bound();
 }
 
 // Moves to the extras what would miss the bound once its range is rounded, and what is too near.
-void Encoder::keep_bound(const CloudView& cloud) {
+void Encoder::keep_bound() {
   unprojector_->unproject(image_, placed_);
   const std::vector<BeamGeometry> beams = beam_geometry(*model_);
   const double along = 0.5 * range_step(options_) / kRangeUnits;
@@ -202,9 +211,9 @@ void Encoder::keep_bound(const CloudView& cloud) {
     const std::uint32_t point = image_.point[cell];
     const double px = placed_.x[at];
     const double py = placed_.y[at];
-    const double dx = px - cloud.x.at(point);
-    const double dy = py - cloud.y.at(point);
-    const double dz = double{placed_.z[at]} - cloud.z.at(point);
+    const double dx = px - double{x_[point]};
+    const double dy = py - double{y_[point]};
+    const double dz = double{placed_.z[at]} - double{z_[point]};
     ++at;
     // The rounding moves the point along its beam by up to half a step, either way.
     const BeamGeometry& beam = beams[cell / static_cast<std::size_t>(image_.cols)];
@@ -268,7 +277,7 @@ void Encoder::write_grid(PartList& parts) {
   write_firings(image_.firing_tick, parts.bytes());
 }
 
-void Encoder::write_extras(const CloudView& cloud, PartList& parts, SweepCounts& counts) {
+void Encoder::write_extras(PartList& parts, SweepCounts& counts) {
   lattice_.clear();
   const std::int32_t step = extras_step(options_);
   const double per_metre = double{kRangeUnits} / step;
@@ -279,8 +288,7 @@ void Encoder::write_extras(const CloudView& cloud, PartList& parts, SweepCounts&
     }
     LatticePoint place{};
     bool inside = true;
-    const double xyz[] = {cloud.x.at(extra.point), cloud.y.at(extra.point),
-                          cloud.z.at(extra.point)};
+    const std::array<double, 3> xyz{x_[extra.point], y_[extra.point], z_[extra.point]};
     if (!(std::isfinite(xyz[0]) && std::isfinite(xyz[1]) && std::isfinite(xyz[2]))) {
       ++counts.not_finite;
       continue;

@@ -44,11 +44,11 @@ class Encoder {
  private:
   void learn_model(const CloudView& cloud);
   void project(const CloudView& cloud, SweepCounts& counts);
-  void keep_bound(const CloudView& cloud);
+  void keep_bound();
   void plan_layers();
   void write_model_part(PartList& parts);
   void write_grid(PartList& parts);
-  void write_extras(const CloudView& cloud, PartList& parts, SweepCounts& counts);
+  void write_extras(PartList& parts, SweepCounts& counts);
 
   BeamOptions options_;
   Crop crop_;
@@ -59,6 +59,7 @@ class Encoder {
   std::optional<BeamUnprojector> unprojector_;
   int frames_since_model_ = 0;
   std::uint32_t model_id_ = 0;
+  std::vector<float> x_, y_, z_;       ///< of the cloud
   std::vector<std::uint32_t> chosen_;  ///< points that the crop leaves
   BeamImage image_;
   PointCloud placed_;

@@ -11,8 +11,6 @@ namespace sweepcast::beam {
 /// Ranges in 0.1 mm with a margin of empty cells all around, so that neighbours need no checks.
 class PaddedImage {
  public:
-  static constexpr int kMargin = 64;  ///< more than three times the largest stride
-
   struct Cell {
     std::int32_t range = 0;     ///< reconstructed; 0 where empty or not yet known
     std::uint32_t inverse = 0;  ///< 2^44 / range
@@ -20,22 +18,28 @@ class PaddedImage {
     std::uint8_t activity = 0;  ///< how far the prediction was off, in steps, at most 20
   };
 
-  void reset(int rows, int cols) {
+  /// All cells unknown. Neighbours are looked at as far as three of the largest strides away.
+  void reset(int rows, int cols, int row_stride, int col_stride) {
     rows_ = rows;
     cols_ = cols;
-    pitch_ = cols + 2 * kMargin;
-    cells_.assign(static_cast<std::size_t>(pitch_) * static_cast<std::size_t>(rows + 2 * kMargin),
-                  Cell{});
+    row_margin_ = 3 * row_stride;
+    col_margin_ = 3 * col_stride;
+    pitch_ = cols + 2 * col_margin_;
+    cells_.assign(
+        static_cast<std::size_t>(pitch_) * static_cast<std::size_t>(rows + 2 * row_margin_),
+        Cell{});
   }
   [[nodiscard]] int rows() const { return rows_; }
   [[nodiscard]] int cols() const { return cols_; }
   [[nodiscard]] std::ptrdiff_t pitch() const { return pitch_; }
   [[nodiscard]] Cell* at(int row, int col) {
-    return cells_.data() + (row + kMargin) * static_cast<std::ptrdiff_t>(pitch_) + col + kMargin;
+    return cells_.data() + static_cast<std::ptrdiff_t>(row + row_margin_) * pitch_ + col +
+           col_margin_;
   }
 
  private:
   int rows_ = 0, cols_ = 0;
+  int row_margin_ = 0, col_margin_ = 0;
   int pitch_ = 0;
   std::vector<Cell> cells_;
 };

@@ -8,7 +8,7 @@
 namespace sweepcast::beam {
 namespace {
 
-constexpr int kTableBits = 14;
+constexpr int kTableBits = 13;
 constexpr int kGroup = 8;  // cells whose states are said at once when they are as expected
 
 // The weight of the upper of two rows for a row between: a plane's inverse range is about linear in
@@ -144,7 +144,8 @@ LayerCoder::~LayerCoder() = default;
 
 void LayerCoder::begin(const LayerPlan& plan) {
   plan_ = plan;
-  image_.reset(plan.rows, plan.cols);
+  image_.reset(plan.rows, plan.cols, plan.lattice.front().row_stride,
+               plan.lattice.front().col_stride);
   models_->cells.begin(plan.step);
   models_->azimuth.begin();
   models_->height.begin();
