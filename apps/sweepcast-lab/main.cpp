@@ -1,6 +1,9 @@
+#include <cstdio>
+#include <exception>
+
 #include "sweepcast-lab/commands.hpp"
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   // Named as the user called it: `sweepcast` hands these subcommands over.
   CLI::App app{"Simulates drives and measures codecs.", "sweepcast"};
   app.require_subcommand(1);
@@ -9,4 +12,7 @@ int main(int argc, char** argv) {
   sweepcast::app::add_bench(app, command);
   sweepcast::app::add_ablate(app, command);
   return sweepcast::app::run(app, command, argc, argv);
+} catch (const std::exception& error) {  // memory ran out before there was a command to blame
+  std::fputs(error.what(), stderr);
+  return 1;
 }
