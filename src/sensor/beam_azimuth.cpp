@@ -147,23 +147,22 @@ class LagFinder {
   // counts for no more than that `enough` did: where firings are at nearly equal distances the
   // scene would decide, else.
   [[nodiscard]] int best_lag(std::size_t k, int enough) const {
-    std::vector<std::int64_t> score(static_cast<std::size_t>(2 * reach_ + 1), 0);
+    std::vector<std::int64_t> score(2 * static_cast<std::size_t>(reach_) + 1, 0);
     for (std::size_t n = 0; n < fired_.size(); ++n) {
       const auto& own = ticks_[n][k];
       const std::size_t step = own.size() / 1500 + 1;
       for (std::size_t i = 0; i < own.size(); i += step) {
         int at = wrapped(own[i] - reach_);
         for (int lag = reach_; lag >= -reach_; --lag) {
-          score[static_cast<std::size_t>(lag + reach_)] +=
-              std::min(fired_[n][static_cast<std::size_t>(at)], enough);
+          score[index(lag)] += std::min(fired_[n][static_cast<std::size_t>(at)], enough);
           if (++at == turn_) at = 0;
         }
       }
     }
     const std::int64_t most = *std::max_element(score.begin(), score.end());
     for (int lag = 0; lag <= reach_; ++lag) {
-      if (score[static_cast<std::size_t>(reach_ + lag)] == most) return lag;
-      if (score[static_cast<std::size_t>(reach_ - lag)] == most) return -lag;
+      if (score[index(lag)] == most) return lag;
+      if (score[index(-lag)] == most) return -lag;
     }
     return 0;
   }
@@ -189,6 +188,11 @@ class LagFinder {
 
  private:
   static constexpr double kMaxLagTurns = 25.0 / 360.0;
+
+  // Of a lag among the scores.
+  [[nodiscard]] std::size_t index(int lag) const {
+    return static_cast<std::size_t>(lag) + static_cast<std::size_t>(reach_);
+  }
 
   [[nodiscard]] int wrapped(int tick) const {
     tick %= turn_;

@@ -24,6 +24,7 @@ std::int32_t nearest(float value) {
 
 std::vector<BeamLine> lines_of(const std::vector<BeamGeometry>& beams) {
   std::vector<BeamLine> lines;
+  lines.reserve(beams.size());
   for (const BeamGeometry& beam : beams) lines.push_back({beam.tan, beam.height_m, 0});
   return lines;
 }

@@ -10,7 +10,8 @@ constexpr double kTop = 2.4;         // of the tangents looked at, either way: 6
 constexpr double kMaxHeight = 0.36;  // of a beam's origin, metres, either way
 constexpr double kHeightStep = 0.004;
 constexpr int kHeights = 2 * static_cast<int>(kMaxHeight / kHeightStep) + 1;
-constexpr int kMinSupport = 12;  // points of a beam
+constexpr int kMiddle = kHeights / 2;  // the row of height 0
+constexpr int kMinSupport = 12;        // points of a beam
 constexpr std::size_t kMaxVoters = 60'000;
 
 // Votes of points for lines: row per height, column per tangent.
@@ -120,7 +121,7 @@ class Hough {
     return std::abs(z_[i] - (rho_[i] * line.tan + line.height)) < std::min(reach, 1e-3 * rho_[i]);
   }
 
-  static double height(int h) { return (h - kHeights / 2) * kHeightStep; }
+  static double height(int h) { return (h - kMiddle) * kHeightStep; }
   [[nodiscard]] double tangent(int c) const { return (c + 0.5) * bin_ - kTop; }
   [[nodiscard]] const std::int32_t* row(int h) const {
     return votes_.data() + static_cast<std::size_t>(h) * static_cast<std::size_t>(cols_);

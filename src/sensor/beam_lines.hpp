@@ -64,9 +64,11 @@ class LineTable {
     const float below = distance(k + 1, rho, z);
     if ((here <= above) & (here <= below)) return k - 1;
     const std::size_t step = above < below ? std::size_t(0) - 1 : 1;
-    for (float next = std::min(above, below); next < here; next = distance(k + step, rho, z)) {
+    float next = std::min(above, below);
+    while (next < here) {
       k += step;
       here = next;
+      next = distance(k + step, rho, z);
     }
     return k - 1;
   }

@@ -93,15 +93,15 @@ MotionFitter::MotionFitter(const CloudView& cloud, std::size_t stride) {
   z_.resize(points_.size());
 }
 
-void MotionFitter::undo(const TwistVector& vector) {
-  const Twist<double> twist(quantised_motion(vector));
+void MotionFitter::undo(const TwistVector& twist) {
+  const Twist<double> own_motion(quantised_motion(twist));
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const std::array<double, 3> q{points_[i][0], points_[i][1], points_[i][2]};
     std::array<double, 3> p = q;
     double s = 0.0;
     for (int round = 0; round < 3; ++round) {
       s = arc_tangent(p[1], p[0]) / kTurn;
-      p = twist.undo(q, s);
+      p = own_motion.undo(q, s);
     }
     own_[i] = p;
     time_[i] = s;
@@ -269,7 +269,9 @@ void MotionFitter::find_yaw(int ticks_per_turn, const SensorModel* model, TwistV
   double best = 0.0;
   double found = turned;
   const auto search = [&](double centre, double reach, double step) {
-    for (double yaw = centre - reach; yaw <= centre + reach; yaw += step) {
+    const int steps = static_cast<int>(reach / step);
+    for (int n = -steps; n <= steps; ++n) {
+      const double yaw = centre + n * step;
       if (const double here = coherence(yaw); here > best) {
         best = here;
         found = yaw;

@@ -128,6 +128,7 @@ std::int32_t quantised(double value, double units) {
 SensorModel model_of(const std::vector<BeamLine>& lines, const std::vector<BeamAzimuth>& azimuths,
                      int ticks) {
   std::vector<int> lags;
+  lags.reserve(azimuths.size());
   for (const BeamAzimuth& azimuth : azimuths) lags.push_back(azimuth.lag);
   std::nth_element(lags.begin(), lags.begin() + static_cast<std::ptrdiff_t>(lags.size() / 2),
                    lags.end());
