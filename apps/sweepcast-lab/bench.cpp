@@ -34,8 +34,9 @@ using lab::BenchRow;
 struct BenchCommand {
   std::vector<std::string> inputs;
   std::vector<std::string> codecs{"rcpcc"};
-  std::vector<std::string> levels;  ///< of the ladder; "all"
-  std::vector<std::string> params;  ///< further settings of rcpcc
+  std::vector<std::string> levels;                                  ///< of the ladder; "all"
+  std::vector<std::string> params;                                  ///< further settings of rcpcc
+  std::vector<double> max_errors{0.01, 0.02, 0.05, 0.1, 0.2, 0.4};  ///< settings of beam, metres
   std::vector<std::string> peers;
   RcpccOptions rcpcc;  ///< what all settings share
   int runs = 5;
@@ -111,6 +112,18 @@ Status add_rcpcc(const BenchCommand& options, lab::Peers& peers) {
   return {};
 }
 
+Status add_beam(const BenchCommand& options, lab::Peers& peers) {
+  for (const double max_error : options.max_errors) {
+    EncoderOptions encoder;
+    encoder.codec = CodecId::beam;
+    encoder.beam.max_error_m = max_error;
+    auto peer = lab::make_sweepcast_peer(encoder, fmt::format("E {} m", max_error));
+    if (!peer) return tl::unexpected(peer.error());
+    peers.push_back(std::move(*peer));
+  }
+  return {};
+}
+
 Status add_draco(lab::Peers& peers) {
   for (int bits = 8; bits <= 14; ++bits) {
     auto peer = lab::make_draco_peer({.quantisation_bits = bits, .compression_level = 7});
@@ -129,6 +142,11 @@ Result<lab::Peers> make_peers(const BenchCommand& options) {
   lab::Peers peers;
   if (contains(options.codecs, "rcpcc")) {
     if (const Status added = add_rcpcc(options, peers); !added) {
+      return tl::unexpected(added.error());
+    }
+  }
+  if (contains(options.codecs, "beam")) {
+    if (const Status added = add_beam(options, peers); !added) {
       return tl::unexpected(added.error());
     }
   }
@@ -259,10 +277,10 @@ void add_bench(CLI::App& app, Command& command) {
       "bench", "Measure ratio, distortion and time over settings, beside other codecs");
   sub->add_option("INPUT", options->inputs, "Clouds (.bin, .pcd, .ply), or folders of them")
       ->required();
-  sub->add_option("--codec", options->codecs, "Our codecs to measure [rcpcc]")
+  sub->add_option("--codec", options->codecs, "Our codecs to measure: rcpcc, beam [rcpcc]")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->check(CLI::IsMember({"rcpcc"}));
+      ->check(CLI::IsMember({"rcpcc", "beam"}));
   sub->add_option("--levels", options->levels,
                   fmt::format("Levels of rcpcc [all, and --params {}]", kPaperSetting))
       ->delimiter(',')
@@ -273,6 +291,11 @@ void add_bench(CLI::App& app, Command& command) {
                   "may be repeated")
       ->allow_extra_args(false)
       ->type_name("AZIMUTH,ELEVATION,THRESHOLD,QSTEP");
+  sub->add_option("--max-error", options->max_errors,
+                  "Settings of beam: largest errors in metres [0.01,0.02,0.05,0.1,0.2,0.4]")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("METRES");
   sub->add_option("--zstd", options->rcpcc.zstd_level,
                   fmt::format("Level of zstd for all settings [{}]", RcpccOptions{}.zstd_level))
       ->check(CLI::Range(1, 22));

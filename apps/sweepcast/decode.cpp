@@ -28,6 +28,7 @@ struct DecodeOptions {
   std::string format = "bin";
   bool ascii = false;
   bool compressed = false;
+  int layers = DecoderOptions{}.max_layers;
   bool json = false;
 };
 
@@ -110,6 +111,7 @@ Status decode(const DecodeOptions& options) {
   const CloudFormat format = *cloud_format_of("x." + options.format);
 
   Workspace work;
+  work.decoder = Decoder({.max_layers = options.layers});
   std::vector<Decoded> frames;
   std::vector<std::string> errors;
   const std::size_t count = reader->entries().size();
@@ -157,6 +159,10 @@ void add_decode(CLI::App& app, Command& command) {
   auto* ascii = sub->add_flag("--ascii", options->ascii, "Write numbers as text (pcd, ply)");
   sub->add_flag("--compressed", options->compressed, "Write binary_compressed (pcd)")
       ->excludes(ascii);
+  sub->add_option("--layers", options->layers,
+                  "Codec beam: decode this many layers only, coarsest first [all]")
+      ->check(CLI::Range(1, DecoderOptions{}.max_layers).description(""))
+      ->type_name("K");
   sub->add_flag("--json", options->json, "Print the outcome as JSON");
   sub->footer("Example: sweepcast decode drive.sweep -o decoded --format pcd");
   sub->callback([options, &command] {
