@@ -159,6 +159,7 @@ void Encoder::learn_model(const CloudView& cloud) {
     return;
   }
   model_ = estimate->model;
+  if (!estimate->motions.empty()) motion_ = estimate->motions.front();
   projector_.emplace(*model_);
   unprojector_.emplace(*model_);
   frames_since_model_ = options_.model_interval;
@@ -191,6 +192,10 @@ void Encoder::project(const CloudView& cloud, SweepCounts& counts) {
   BeamGridOptions grid;
   grid.max_error_m = kAngularShare * options_.max_error_m;
   const CloudView floats = CloudView::columns(x_, y_, z_);
+  if (motion_) {  // the sensor's sweeps come deskewed: each by a motion of its own
+    motion_ = estimate_motion(floats, *model_, &*motion_);
+    grid.motion = motion_;
+  }
   if (counts.cropped == 0) {
     projector_->project(floats, grid, image_);
   } else {
@@ -204,7 +209,8 @@ void Encoder::keep_bound() {
   unprojector_->unproject(image_, placed_);
   const std::vector<BeamGeometry> beams = beam_geometry(*model_);
   const double along = 0.5 * range_step(options_) / kRangeUnits;
-  const double bound = options_.max_error_m * options_.max_error_m;
+  // A hundredth is kept back: a deskewed point's beam is a little off the direction taken below.
+  const double bound = 0.99 * options_.max_error_m * options_.max_error_m;
   std::size_t at = 0;
   for (std::size_t cell = 0; cell < image_.cells(); ++cell) {
     if (image_.range[cell] == 0) continue;

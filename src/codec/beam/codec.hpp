@@ -53,7 +53,8 @@ class Encoder {
   BeamOptions options_;
   Crop crop_;
   std::optional<SensorModel> model_;
-  int sweeps_to_wait_ = 0;  ///< before looking for a model again
+  std::optional<Motion> motion_;  ///< of the last sweep, where sweeps come deskewed
+  int sweeps_to_wait_ = 0;        ///< before looking for a model again
   int patience_ = 4;
   std::optional<BeamProjector> projector_;
   std::optional<BeamUnprojector> unprojector_;
