@@ -223,8 +223,8 @@ int MotionFitter::find_ticks() {
   return 0;
 }
 
-void MotionFitter::find_yaw(int ticks_per_turn, const SensorModel* model, TwistVector& twist) {
-  constexpr double kReach = 0.14;  // radians a turn: 80 degrees a second at 10 Hz
+void MotionFitter::find_yaw(int ticks_per_turn, const SensorModel* model, double centre,
+                            double reach, TwistVector& twist) {
   constexpr std::size_t kBeams = 8;
   constexpr std::size_t kPoints = 400;
   struct Sample {
@@ -268,10 +268,10 @@ void MotionFitter::find_yaw(int ticks_per_turn, const SensorModel* model, TwistV
   };
   double best = 0.0;
   double found = turned;
-  const auto search = [&](double centre, double reach, double step) {
-    const int steps = static_cast<int>(reach / step);
+  const auto search = [&](double middle, double range, double step) {
+    const int steps = static_cast<int>(range / step);
     for (int n = -steps; n <= steps; ++n) {
-      const double yaw = centre + n * step;
+      const double yaw = middle + n * step;
       if (const double here = coherence(yaw); here > best) {
         best = here;
         found = yaw;
@@ -279,7 +279,7 @@ void MotionFitter::find_yaw(int ticks_per_turn, const SensorModel* model, TwistV
     }
   };
   const double step = 1.5 / ticks_per_turn;
-  search(0.0, kReach, step);
+  search(centre, reach, step);
   search(found, step, step / 10.0);
   twist[5] = found;
 }
@@ -314,11 +314,18 @@ TwistVector MotionFitter::refine(const SensorModel& model, TwistVector twist) {
 }
 
 Motion estimate_motion(const CloudView& cloud, const SensorModel& model, const Motion* guess) {
-  constexpr std::size_t kEnough = 40'000;  // points
-  MotionFitter fitter(cloud, std::max<std::size_t>(1, cloud.size / kEnough));
-  const TwistVector start = guess != nullptr ? twist_vector(*guess) : TwistVector{};
-  TwistVector twist = fitter.straighten(model, guess != nullptr ? &start : nullptr);
-  fitter.find_yaw(model.ticks_per_turn, &model, twist);
+  constexpr double kMaxYawChange = 0.03;  // radians a turn, from one sweep to the next
+  const std::size_t enough = guess != nullptr ? 12'000 : 40'000;  // points
+  MotionFitter fitter(cloud, std::max<std::size_t>(1, cloud.size / enough));
+  if (fitter.empty()) return guess != nullptr ? *guess : Motion{};
+  if (guess == nullptr) {
+    TwistVector twist = fitter.straighten(model, nullptr);
+    fitter.find_yaw(model.ticks_per_turn, &model, 0.0, kMaxYaw, twist);
+    return quantised_motion(fitter.refine(model, twist));
+  }
+  const TwistVector start = twist_vector(*guess);
+  TwistVector twist = fitter.straighten(model, &start);
+  fitter.find_yaw(model.ticks_per_turn, &model, start[5], kMaxYawChange, twist);
   return quantised_motion(fitter.refine(model, twist));
 }
 

@@ -15,6 +15,9 @@
 
 namespace sweepcast {
 
+/// The fastest turn that is looked for, radians a turn: 80 degrees a second at 10 Hz.
+inline constexpr double kMaxYaw = 0.14;
+
 /// Translation, metres, then rotation, radians; of a whole turn.
 using TwistVector = std::array<double, 6>;
 
@@ -23,6 +26,9 @@ class MotionFitter {
  public:
   /// Takes every `stride`-th point.
   MotionFitter(const CloudView& cloud, std::size_t stride);
+
+  /// Whether no point is far enough from the sensor to tell anything.
+  [[nodiscard]] bool empty() const { return points_.empty(); }
 
   /// With nothing known: from the beams in front, where hardly any time has passed, outwards.
   /// Returns the twist but for its turn about z, which heights do not show;
@@ -34,8 +40,10 @@ class MotionFitter {
   [[nodiscard]] int find_ticks();
 
   /// Adds to `twist` the turn about z at which the azimuths of each beam come back to whole ticks.
-  /// Without a model lateral offsets are searched too. After `bootstrap` or `straighten`.
-  void find_yaw(int ticks_per_turn, const SensorModel* model, TwistVector& twist);
+  /// Looks up to `reach` from `centre`, radians. Without a model lateral offsets are searched too.
+  /// After `bootstrap` or `straighten`.
+  void find_yaw(int ticks_per_turn, const SensorModel* model, double centre, double reach,
+                TwistVector& twist);
 
   /// The twist but for its turn about z that straightens the lines of a model; from a guess, or
   /// from the front outwards.

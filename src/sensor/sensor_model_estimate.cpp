@@ -288,7 +288,8 @@ Result<SensorEstimate> estimate_deskewed(std::span<const CloudView> sweeps,
   }
   TwistVector twist = *straightened;
   if (options.ticks_per_turn == 0) options.ticks_per_turn = fitter.find_ticks();
-  if (options.ticks_per_turn != 0) fitter.find_yaw(options.ticks_per_turn, nullptr, twist);
+  if (options.ticks_per_turn != 0)
+    fitter.find_yaw(options.ticks_per_turn, nullptr, 0.0, kMaxYaw, twist);
   std::vector<Motion> motions{quantised_motion(twist)};
   std::vector<PointCloud> own(sweeps.size());
   undo_motion(sweeps.front(), motions.front(), own.front());

@@ -236,6 +236,7 @@ TEST(BeamGrid, RawKittiSweepsHaveACellForEveryPoint) {
   const auto paths = lab::real_sweeps("kitti_hdl64");
   if (paths.empty()) GTEST_SKIP() << "needs SWEEPCAST_DATA";
   std::vector<PointCloud> clouds;
+  clouds.reserve(paths.size());
   for (const auto& path : paths) clouds.push_back(lab::read_kitti(path));
   const std::vector<CloudView> views(clouds.begin(), clouds.end());
   const auto estimate = estimate_sensor_model(views);
