@@ -156,6 +156,11 @@ std::optional<TwistVector> MotionFitter::bootstrap(int max_beams) {
       undo(twist);
     }
   }
+  return settle(max_beams, twist);
+}
+
+std::optional<TwistVector> MotionFitter::settle(int max_beams, TwistVector twist) {
+  undo(twist);
   for (const double scale : {0.01, 0.005, 0.003, 0.002, 0.002, 0.002}) {
     if (scale == 0.005 || scale == 0.003) {
       lines_ = find_beam_lines({rho_, z_}, {max_beams, scale / 2.0});
@@ -166,6 +171,7 @@ std::optional<TwistVector> MotionFitter::bootstrap(int max_beams) {
     twist = height_step(lines_, true, 1.0, scale, twist);
     undo(twist);
   }
+  assign(lines_);
   return twist;
 }
 

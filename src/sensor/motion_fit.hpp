@@ -35,6 +35,9 @@ class MotionFitter {
   /// none where there are no beams.
   [[nodiscard]] std::optional<TwistVector> bootstrap(int max_beams);
 
+  /// Straightens the lines again, from a twist that is nearly right; lines are found anew.
+  [[nodiscard]] std::optional<TwistVector> settle(int max_beams, TwistVector twist);
+
   /// The encoder's ticks, from the steps between neighbouring points of a beam, which the motion
   /// hardly changes; 0 where there are none. After `bootstrap`.
   [[nodiscard]] int find_ticks();

@@ -288,8 +288,16 @@ Result<SensorEstimate> estimate_deskewed(std::span<const CloudView> sweeps,
   }
   TwistVector twist = *straightened;
   if (options.ticks_per_turn == 0) options.ticks_per_turn = fitter.find_ticks();
-  if (options.ticks_per_turn != 0)
+  if (options.ticks_per_turn != 0) {
+    // The lines were straightened without the turn about z; once it is known, better.
     fitter.find_yaw(options.ticks_per_turn, nullptr, 0.0, kMaxYaw, twist);
+    for (int round = 0; round < 2; ++round) {
+      const auto settled = fitter.settle(options.max_beams, twist);
+      if (!settled) break;
+      twist = *settled;
+      fitter.find_yaw(options.ticks_per_turn, nullptr, twist[5], 0.01, twist);
+    }
+  }
   std::vector<Motion> motions{quantised_motion(twist)};
   std::vector<PointCloud> own(sweeps.size());
   undo_motion(sweeps.front(), motions.front(), own.front());
