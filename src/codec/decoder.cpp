@@ -21,7 +21,13 @@ struct Decoder::State {
       return fail(ErrorCode::limit, "the frame holds more points than the decoder may give");
     }
     if (header.codec == CodecId::beam) {
-      return beam.decode(frame, header, options.max_layers, cloud);
+      if (Status status = beam.decode(frame, header, options.max_layers, cloud); !status) {
+        return status;
+      }
+      if (cloud.size() > header.counts.points_coded) {
+        return fail(ErrorCode::corrupt, "the frame holds more points than its head announces");
+      }
+      return {};
     }
     if (header.frame_size > frame.size()) {
       return fail(ErrorCode::truncated, "the frame is cut short");

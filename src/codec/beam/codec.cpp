@@ -342,7 +342,7 @@ Status Decoder::decode(std::span<const std::byte> frame, const FrameHeader& head
   if (!has_extras) return {};
   const auto extras = checked_part(frame, header, static_cast<std::uint8_t>(Part::extras));
   if (!extras) return tl::unexpected(extras.error());
-  if (!read_extras(*extras, cloud)) {
+  if (!read_extras(*extras, header.counts.points_coded, cloud)) {
     return fail(ErrorCode::corrupt, "the frame's extra points cannot be right");
   }
   return {};
@@ -385,6 +385,10 @@ bool Decoder::read_grid(std::span<const std::byte> bytes) {
   if (!known_model_) return true;
   image_.rows = static_cast<int>(model_.beams.size());
   if (image_.cells() > kMostPoints || image_.cols > model_.ticks_per_turn) return false;
+  if (PaddedImage::cells(image_.rows, image_.cols, base_rows, base_cols) > 2 * kMostPoints) {
+    return false;
+  }
+  if (image_.motion && !sweepcast::check(*image_.motion, model_)) return false;
   set_plan(model_, image_.cols, step_, base_rows, base_cols, plan_);
   return true;
 }
@@ -428,12 +432,11 @@ Status Decoder::read_layers(std::span<const std::byte> frame, const FrameHeader&
   return {};
 }
 
-bool Decoder::read_extras(std::span<const std::byte> bytes, PointCloud& cloud) {
+bool Decoder::read_extras(std::span<const std::byte> bytes, std::size_t most, PointCloud& cloud) {
   ByteReader in(bytes);
-  const std::uint64_t count = in.get_varint(kMostPoints);
+  const std::uint64_t count = in.get_varint(std::min<std::uint64_t>(most, kMostPoints));
   const double step = static_cast<double>(in.get_varint(kLargestStep)) / kRangeUnits;
   if (!in.ok()) return false;
-  // A point takes at least a hundredth of a bit, whatever the models have learnt.
   lattice_.resize(count);
   if (!read_octree(in.get_bytes(in.remaining()), lattice_)) return false;
   for (const LatticePoint& place : lattice_) {

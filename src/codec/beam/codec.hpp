@@ -85,7 +85,8 @@ class Decoder {
   [[nodiscard]] bool read_grid(std::span<const std::byte> bytes);
   [[nodiscard]] Status read_layers(std::span<const std::byte> frame, const FrameHeader& header,
                                    int layers);
-  [[nodiscard]] bool read_extras(std::span<const std::byte> bytes, PointCloud& cloud);
+  [[nodiscard]] bool read_extras(std::span<const std::byte> bytes, std::size_t most,
+                                 PointCloud& cloud);
 
   SensorModel model_;
   std::optional<std::uint32_t> model_id_;

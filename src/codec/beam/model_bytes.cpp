@@ -97,7 +97,7 @@ bool read_firings(std::span<const std::byte> bytes, std::int32_t ticks_per_turn,
   std::int64_t last = -1;
   for (std::int32_t& tick : ticks) {
     last += std::int64_t{steps.code(coder, 0)} + 1;
-    if (last >= ticks_per_turn) return false;
+    if (last >= ticks_per_turn || coder.overran()) return false;
     tick = static_cast<std::int32_t>(last);
   }
   return !coder.overran();

@@ -25,9 +25,12 @@ class PaddedImage {
     row_margin_ = 3 * row_stride;
     col_margin_ = 3 * col_stride;
     pitch_ = cols + 2 * col_margin_;
-    cells_.assign(
-        static_cast<std::size_t>(pitch_) * static_cast<std::size_t>(rows + 2 * row_margin_),
-        Cell{});
+    cells_.assign(cells(rows, cols, row_stride, col_stride), Cell{});
+  }
+  /// How many cells such an image has, margin included.
+  [[nodiscard]] static std::size_t cells(int rows, int cols, int row_stride, int col_stride) {
+    return static_cast<std::size_t>(cols + 6 * col_stride) *
+           static_cast<std::size_t>(rows + 6 * row_stride);
   }
   [[nodiscard]] int rows() const { return rows_; }
   [[nodiscard]] int cols() const { return cols_; }

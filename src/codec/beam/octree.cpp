@@ -39,6 +39,14 @@ LatticePoint point_of(std::uint64_t code) {
   return point;
 }
 
+// Whether damaged bytes have ended, so that a few of them cannot keep the decoder busy for long.
+bool ran_dry(const RangeDecoder& coder) {
+  return coder.overran();
+}
+bool ran_dry(const RangeEncoder& /*coder*/) {
+  return false;
+}
+
 // Walks the tree depth first. Each node says how many of its points lie in the lower half of each
 // axis in turn: a binary split of the Morton codes. Counts of one need a bit a level, no more.
 template <class Coder>
@@ -60,6 +68,7 @@ class TreeCoder {
                            static_cast<std::uint32_t>(first_high - codes.begin()), level, parent);
     const std::uint32_t shape = parent * 3U + (low == 0 ? 0U : low == codes.size() ? 1U : 2U);
     const std::uint32_t next = shape % 59'049U;  // the shapes of the last ten splits
+    if (ran_dry(coder_)) return;
     if (low > 0) code(codes.first(low), level - 1, prefix, next);
     if (low < codes.size()) code(codes.subspan(low), level - 1, prefix | high_bit, next);
   }

@@ -45,6 +45,14 @@ struct Traversal {
   }
 };
 
+// Whether damaged bytes have ended, so that a few of them cannot keep the decoder busy for long.
+bool ran_dry(const RangeDecoder& coder) {
+  return coder.overran();
+}
+bool ran_dry(const RangeEncoder& /*coder*/) {
+  return false;
+}
+
 // Codes the cells that a step adds, row by row: first which hold a point, then their ranges.
 // `range` is null when decoding.
 template <class Coder>
@@ -60,6 +68,7 @@ void code_step(Coder& coder, CellCoder& cells, PaddedImage& image, const LayerPl
         range == nullptr ? nullptr : range + static_cast<std::ptrdiff_t>(row) * plan.cols;
     std::uint32_t history = 0;
     for (int col = at.first_col; col < plan.cols; col += at.col_stride * kGroup) {
+      if (ran_dry(coder)) return;
       const int count = std::min(kGroup, (plan.cols - col + at.col_stride - 1) / at.col_stride);
       if (cells.code_group(coder, image.at(row, col), at.col_stride, count, at.neighbours,
                            truth == nullptr ? nullptr : truth + col, history)) {
@@ -74,6 +83,7 @@ void code_step(Coder& coder, CellCoder& cells, PaddedImage& image, const LayerPl
     for (int col = at.first_col; col < plan.cols; col += at.col_stride) {
       PaddedImage::Cell* cell = image.at(row, col);
       if (cell->state != 2) continue;
+      if (ran_dry(coder)) return;
       cells.code_range(coder, cell, at.neighbours, truth == nullptr ? 0 : truth[col]);
     }
   }
@@ -189,6 +199,7 @@ bool LayerCoder::decode(int layer, std::span<const std::byte> bytes,
   const auto [first, last] = steps_of(plan_, layer);
   for (std::uint32_t step = first; step < last; ++step) {
     code_step(coder, models_->cells, image_, plan_, step, nullptr);
+    if (coder.overran()) return false;
     if (residuals.azimuth.empty()) continue;
     for_each_point(step, [&](std::size_t cell) {
       residuals.azimuth[cell] = models_->azimuth.code(coder, 0);
