@@ -15,7 +15,7 @@ namespace {
 constexpr double kTurn = 2.0 * kPi;
 constexpr float kInverseTurn = static_cast<float>(1.0 / kTurn);
 constexpr std::size_t kBatch = 512;
-constexpr float kMaxRange = 2.0e5F;  // metres: 0.1 mm of it fit 32 bits
+constexpr float kMaxRange = 1.0e5F;  // metres: 0.1 mm of it fit 32 bits
 
 // Nearest integer; the compiler makes one instruction of it, which std::lround is not.
 std::int32_t nearest(float value) {

@@ -1,5 +1,6 @@
 #include "sweepcast/sensor_model.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <string>
@@ -12,6 +13,7 @@ namespace {
 
 constexpr std::int32_t kMaxTangent = 100 * kTangentUnits;
 constexpr std::int32_t kMaxOffset = 10 * kLengthUnits;
+constexpr std::int32_t kMaxJitter = 4096;
 constexpr std::int32_t kMaxAngle = 360 * kAngleUnits;
 
 bool within(std::int32_t value, std::int32_t limit) {
@@ -31,9 +33,9 @@ Status check(const SensorModel& model) {
     return wrong(std::to_string(model.ticks_per_turn) + " ticks per turn; 1 to 1048576 can be");
   }
   if (!within(model.direction, 1)) return wrong("direction must be -1, 0 or 1");
-  if (model.jitter < 0 || model.jitter > model.ticks_per_turn / 2) {
+  if (model.jitter < 0 || model.jitter > std::min(model.ticks_per_turn / 2, kMaxJitter)) {
     return wrong("jitter of " + std::to_string(model.jitter) +
-                 " ticks; at most half a turn can be");
+                 " ticks; at most half a turn and 4096 can be");
   }
   for (std::size_t k = 0; k < model.beams.size(); ++k) {
     const Beam& beam = model.beams[k];
