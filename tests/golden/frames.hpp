@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "codec/beam/sensor.hpp"
 #include "codec/scene.hpp"
 #include "core/bytes.hpp"
 #include "core/crc32.hpp"
@@ -59,12 +58,6 @@ inline std::vector<GoldenSource> golden_sources() {
     o.region_size = 16;
     o.zstd_level = 19;
   });
-  const PointCloud clean = spinning_sweep(12, 360, 1);
-  PointCloud with_strays = spinning_sweep(8, 200, 2);
-  add_point(with_strays, 0, 0, 0);
-  for (int i = 0; i < 20; ++i) add_point(with_strays, 2 + 0.3 * i, 1 + i * i * 0.05, 3);
-  sources.push_back({"beam_clean", beam_options(0.05), clean});
-  sources.push_back({"beam_strays", beam_options(0.01), with_strays});
   return sources;
 }
 
