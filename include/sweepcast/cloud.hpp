@@ -75,7 +75,8 @@ struct CloudView {
                                          std::span<const float> z) noexcept;
 
   /// Records of `step` bytes with the three coordinates at the given places, as in the data of a
-  /// PointCloud2. Optional fields are added by `field()`.
+  /// PointCloud2. Optional fields are added by `field()`. A field that does not lie within a record
+  /// comes out absent, which an encoder refuses.
   [[nodiscard]] static CloudView records(std::span<const std::byte> data, std::size_t step,
                                          FieldLayout x, FieldLayout y, FieldLayout z) noexcept;
 

@@ -10,6 +10,19 @@ namespace {
 constexpr std::size_t kMostPoints = std::size_t{1} << 24;
 constexpr std::size_t kLongestName = 255;
 
+// Boxes and ranges without NaN, their ends in order.
+Status check(const Crop& crop) {
+  const auto in_order = [](const std::optional<Box>& box) {
+    return !box ||
+           (box->min_x <= box->max_x && box->min_y <= box->max_y && box->min_z <= box->max_z);
+  };
+  const bool ranges_ok =
+      crop.min_range >= 0.0F && (crop.max_range == 0.0F || crop.max_range >= crop.min_range);
+  if (ranges_ok && in_order(crop.keep) && in_order(crop.robot)) return {};
+  return fail(ErrorCode::invalid_argument,
+              "the crop is out of order: minima must be numbers and not exceed the maxima");
+}
+
 Status check(const CloudView& cloud, const SweepInfo& info) {
   if (cloud.size > 0 && !(cloud.x.present() && cloud.y.present() && cloud.z.present())) {
     return fail(ErrorCode::invalid_argument, "the cloud lacks x, y or z");
@@ -48,7 +61,8 @@ Result<Encoder> Encoder::create(const EncoderOptions& options) {
   if (options.codec != CodecId::rcpcc && options.codec != CodecId::beam) {
     return fail(ErrorCode::unsupported, "there is no encoder for this codec");
   }
-  for (const Status& status : {rcpcc::check(options.rcpcc), beam::check(options.beam)}) {
+  for (const Status& status :
+       {check(options.crop), rcpcc::check(options.rcpcc), beam::check(options.beam)}) {
     if (!status) return tl::unexpected(status.error());
   }
   return Encoder(std::make_unique<State>(options));

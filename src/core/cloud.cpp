@@ -117,6 +117,7 @@ CloudView CloudView::columns(std::span<const float> x, std::span<const float> y,
 
 FieldView CloudView::field(std::span<const std::byte> data, std::size_t step, FieldLayout layout,
                            double scale) noexcept {
+  if (layout.offset > step || size_of(layout.type) > step - layout.offset) return {};
   return {data.data() + layout.offset, step, layout.type, scale};
 }
 

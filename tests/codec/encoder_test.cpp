@@ -254,6 +254,19 @@ TEST(Encoder, RefusesOptionsOutOfRange) {
   EXPECT_EQ(Encoder::create(options).error().code, ErrorCode::unsupported);
 }
 
+TEST(Encoder, RefusesCropsOutOfOrder) {
+  const auto nan = std::numeric_limits<float>::quiet_NaN();
+  for (const Crop& crop : {Crop{-1.0F, 0.0F, {}, {}}, Crop{nan, 0.0F, {}, {}},
+                           Crop{5.0F, 4.0F, {}, {}}, Crop{0.0F, 0.0F, Box{0, 0, 1, 1, 1, 0}, {}},
+                           Crop{0.0F, 0.0F, {}, Box{nan, 0, 0, 1, 1, 1}}}) {
+    EncoderOptions options;
+    options.crop = crop;
+    const auto encoder = Encoder::create(options);
+    ASSERT_FALSE(encoder.has_value());
+    EXPECT_EQ(encoder.error().code, ErrorCode::invalid_argument);
+  }
+}
+
 TEST(Encoder, RefusesCloudsAndNamesThatItCannotCode) {
   Encoder encoder = encoder_of({});
   PointCloud cloud = street(4, 90);

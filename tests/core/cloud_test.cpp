@@ -101,6 +101,10 @@ TEST(CloudView, OfRecordsLikePointCloud2) {
   EXPECT_EQ(view.ring.at(2), 60002.0);
   EXPECT_EQ(view.time_ns.at(1), 4'000'000'001.0);
   EXPECT_EQ(CloudView::records(data, 0, {1}, {5}, {9}).size, 0U);
+  // Fields that reach beyond a record would be read from the next one, or past the data.
+  EXPECT_TRUE(CloudView::field(data, 19, {15}).present());
+  EXPECT_FALSE(CloudView::field(data, 19, {16}).present());
+  EXPECT_FALSE(CloudView::field(data, 19, {1000, ScalarType::u8}).present());
 }
 
 TEST(CloudView, OfColumnsAndOfAPointCloud) {
