@@ -1,10 +1,10 @@
-#include "codec/beam/codec.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
 
+#include "codec/beam/alignment.hpp"
+#include "codec/beam/codec.hpp"
 #include "codec/beam/model_bytes.hpp"
 #include "core/crc32.hpp"
 #include "sensor/beam_geometry.hpp"
@@ -24,9 +24,6 @@ constexpr double kAngularShare = 0.15;
 
 // Points on the extras' lattice are at most this far from it, in steps: half a cube's diagonal.
 constexpr double kHalfDiagonal = 0.8660254037844387;
-
-constexpr std::uint64_t kMostPoints = std::uint64_t{1} << 24;
-constexpr std::int32_t kLargestStep = 1 << 20;
 
 std::uint64_t as_unsigned(std::int64_t value) {
   return static_cast<std::uint64_t>(value);
@@ -52,67 +49,7 @@ void write_motion(const Motion& motion, ByteWriter& out) {
   out.put_varint(as_unsigned(motion.zero_tick));
 }
 
-Motion read_motion(ByteReader& in) {
-  Motion motion;
-  for (std::int32_t& v : motion.translation) v = static_cast<std::int32_t>(in.get_signed());
-  for (std::int32_t& v : motion.rotation) v = static_cast<std::int32_t>(in.get_signed());
-  motion.zero_tick = static_cast<std::int32_t>(in.get_varint(kMaxTicks));
-  return motion;
-}
-
-// Column of the coded image in which cell (row, column 0) of the beam image stands.
-std::vector<std::int32_t> first_columns(const SensorModel& model, const BeamImage& image) {
-  std::vector<std::int32_t> shift;
-  column_shifts(model, image.firing_tick, shift);
-  for (std::int32_t& s : shift) {
-    s %= image.cols;
-    if (s < 0) s += image.cols;
-  }
-  return shift;
-}
-
-void set_plan(const SensorModel& model, int cols, std::int32_t step, int base_rows, int base_cols,
-              LayerPlan& plan) {
-  plan.rows = static_cast<int>(model.beams.size());
-  plan.cols = cols;
-  plan.step = step;
-  plan.lattice = make_lattice(base_rows, base_cols);
-  plan.elevation.clear();
-  for (const Beam& beam : model.beams) plan.elevation.push_back(beam.tan_elevation);
-}
-
-// Copies rows between the beam image and the coded one, turned by each row's first column.
-template <class Copy>
-void for_each_aligned(const SensorModel& model, const BeamImage& image, Copy copy) {
-  const std::vector<std::int32_t> first = first_columns(model, image);
-  for (int row = 0; row < image.rows; ++row) {
-    int aligned = first[static_cast<std::size_t>(row)];
-    const std::size_t begin = static_cast<std::size_t>(row) * static_cast<std::size_t>(image.cols);
-    for (int col = 0; col < image.cols; ++col) {
-      copy(row, begin + static_cast<std::size_t>(col), begin + static_cast<std::size_t>(aligned));
-      if (++aligned == image.cols) aligned = 0;
-    }
-  }
-}
-
 }  // namespace
-
-std::string_view part_name(std::uint8_t kind) noexcept {
-  if (kind >= static_cast<std::uint8_t>(Part::layer)) return "layer";
-  switch (static_cast<Part>(kind)) {
-    case Part::model:
-      return "model";
-    case Part::grid:
-      return "grid";
-    case Part::firings:
-      return "firings";
-    case Part::extras:
-      return "extras";
-    case Part::layer:
-      break;
-  }
-  return "unknown";
-}
 
 Status check(const BeamOptions& options) {
   if (!(options.max_error_m >= 0.001 && options.max_error_m <= 2.0)) {
@@ -322,129 +259,6 @@ void Encoder::write_extras(PartList& parts, SweepCounts& counts) {
   parts.begin(static_cast<std::uint8_t>(Part::extras));
   parts.bytes().insert(parts.bytes().end(), bytes_.begin(), bytes_.end());
   write_octree(lattice_, parts.bytes());
-}
-
-// The same way back.
-Status Decoder::decode(std::span<const std::byte> frame, const FrameHeader& header, int layers,
-                       PointCloud& cloud) {
-  cloud.clear();
-  if (Status status = read_model_part(frame, header); !status) return status;
-  const auto grid = checked_part(frame, header, static_cast<std::uint8_t>(Part::grid));
-  if (!grid) return tl::unexpected(grid.error());
-  if (!read_grid(*grid)) return fail(ErrorCode::corrupt, "the frame's grid cannot be right");
-  if (image_.cols > 0) {
-    if (Status status = read_layers(frame, header, layers); !status) return status;
-    unprojector_->unproject(image_, cloud);
-  }
-  const bool has_extras = std::any_of(
-      header.parts.begin(), header.parts.end(),
-      [](const FramePart& part) { return part.kind == static_cast<std::uint8_t>(Part::extras); });
-  if (!has_extras) return {};
-  const auto extras = checked_part(frame, header, static_cast<std::uint8_t>(Part::extras));
-  if (!extras) return tl::unexpected(extras.error());
-  if (!read_extras(*extras, header.counts.points_coded, cloud)) {
-    return fail(ErrorCode::corrupt, "the frame's extra points cannot be right");
-  }
-  return {};
-}
-
-Status Decoder::read_model_part(std::span<const std::byte> frame, const FrameHeader& header) {
-  const bool present = std::any_of(
-      header.parts.begin(), header.parts.end(),
-      [](const FramePart& part) { return part.kind == static_cast<std::uint8_t>(Part::model); });
-  if (!present) return {};
-  const auto bytes = checked_part(frame, header, static_cast<std::uint8_t>(Part::model));
-  if (!bytes) return tl::unexpected(bytes.error());
-  const std::uint32_t id = crc32(*bytes);
-  if (model_id_ == id) return {};
-  ByteReader in(*bytes);
-  model_id_.reset();
-  if (!read_model(in, model_)) {
-    return fail(ErrorCode::corrupt, "the frame's sensor model cannot be right");
-  }
-  unprojector_.emplace(model_);
-  model_id_ = id;
-  return {};
-}
-
-bool Decoder::read_grid(std::span<const std::byte> bytes) {
-  ByteReader in(bytes);
-  image_.cols = static_cast<int>(in.get_varint(kMaxTicks));
-  if (image_.cols == 0) return in.ok();
-  const auto id = in.get<std::uint32_t>();
-  step_ = static_cast<std::int32_t>(in.get_varint(kLargestStep));
-  const int base_rows = in.get<std::uint8_t>();
-  const int base_cols = in.get<std::uint8_t>();
-  image_.azimuth_divisor = static_cast<std::int32_t>(in.get_varint(kMaxTicks));
-  image_.height_step = static_cast<std::int32_t>(in.get_varint(kLargestStep));
-  image_.motion.reset();
-  if (in.get<std::uint8_t>() != 0) image_.motion = read_motion(in);
-  const auto is_stride = [](int v) { return v > 0 && v <= 16 && (v & (v - 1)) == 0; };
-  if (!in.ok() || step_ == 0 || !is_stride(base_rows) || !is_stride(base_cols)) return false;
-  known_model_ = model_id_ == id;
-  if (!known_model_) return true;
-  image_.rows = static_cast<int>(model_.beams.size());
-  if (image_.cells() > kMostPoints || image_.cols > model_.ticks_per_turn) return false;
-  if (PaddedImage::cells(image_.rows, image_.cols, base_rows, base_cols) > 2 * kMostPoints) {
-    return false;
-  }
-  if (image_.motion && !sweepcast::check(*image_.motion, model_)) return false;
-  set_plan(model_, image_.cols, step_, base_rows, base_cols, plan_);
-  return true;
-}
-
-Status Decoder::read_layers(std::span<const std::byte> frame, const FrameHeader& header,
-                            int layers) {
-  if (!known_model_) {
-    return fail(ErrorCode::unsupported,
-                "the frame's sensor model came with an earlier frame; decode from there");
-  }
-  const auto firings = checked_part(frame, header, static_cast<std::uint8_t>(Part::firings));
-  if (!firings) return tl::unexpected(firings.error());
-  image_.firing_tick.resize(static_cast<std::size_t>(image_.cols));
-  if (!read_firings(*firings, model_.ticks_per_turn, image_.firing_tick)) {
-    return fail(ErrorCode::corrupt, "the frame's firings cannot be right");
-  }
-  const bool residuals = image_.azimuth_divisor != 0;
-  for (auto* plane : {&azimuth_, &height_}) plane->assign(residuals ? image_.cells() : 0, 0);
-  layers_.begin(plan_);
-  layers = std::clamp(layers, 1, LayerCoder::layers(plan_));
-  for (int layer = 0; layer < layers; ++layer) {
-    const auto bytes = checked_part(
-        frame, header, static_cast<std::uint8_t>(static_cast<int>(Part::layer) + layer));
-    if (!bytes && bytes.error().code == ErrorCode::truncated && layer > 0) break;
-    if (!bytes) return tl::unexpected(bytes.error());
-    if (!layers_.decode(layer, *bytes, {azimuth_, height_})) {
-      return fail(ErrorCode::corrupt, "a layer of the frame ends too early");
-    }
-  }
-
-  image_.range.resize(image_.cells());
-  image_.azimuth_residual.resize(azimuth_.size());
-  image_.height_residual.resize(height_.size());
-  for_each_aligned(model_, image_, [&](int row, std::size_t cell, std::size_t aligned) {
-    const auto col = static_cast<int>(aligned % static_cast<std::size_t>(image_.cols));
-    image_.range[cell] = layers_.image().at(row, col)->range;
-    if (!residuals) return;
-    image_.azimuth_residual[cell] = azimuth_[aligned];
-    image_.height_residual[cell] = height_[aligned];
-  });
-  return {};
-}
-
-bool Decoder::read_extras(std::span<const std::byte> bytes, std::size_t most, PointCloud& cloud) {
-  ByteReader in(bytes);
-  const std::uint64_t count = in.get_varint(std::min<std::uint64_t>(most, kMostPoints));
-  const double step = static_cast<double>(in.get_varint(kLargestStep)) / kRangeUnits;
-  if (!in.ok()) return false;
-  lattice_.resize(count);
-  if (!read_octree(in.get_bytes(in.remaining()), lattice_)) return false;
-  for (const LatticePoint& place : lattice_) {
-    cloud.x.push_back(static_cast<float>(place[0] * step));
-    cloud.y.push_back(static_cast<float>(place[1] * step));
-    cloud.z.push_back(static_cast<float>(place[2] * step));
-  }
-  return true;
 }
 
 }  // namespace sweepcast::beam
