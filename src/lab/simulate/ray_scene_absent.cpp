@@ -18,6 +18,6 @@ std::optional<std::uint32_t> RayScene::first_hit(Vec3 /*origin*/, Vec3 /*directi
 }
 
 FlushDenormals::FlushDenormals() = default;
-FlushDenormals::~FlushDenormals() = default;
+FlushDenormals::~FlushDenormals() {}  // as declared for the file that has Embree
 
 }  // namespace sweepcast::lab
