@@ -96,8 +96,8 @@ void add_quality(CLI::App& app, EncoderOptions& options) {
   level->excludes(params);
   app.add_option_function<double>(
          "--max-error",
-         [&options](double metres) {
-           options.codec = CodecId::beam;
+         [&options, &app](double metres) {
+           if (app.get_option("--codec")->count() == 0) options.codec = CodecId::beam;
            options.beam.max_error_m = metres;
          },
          fmt::format("Codec beam: no point decodes farther from its place [{}]",
@@ -152,8 +152,8 @@ void add_codec_options(CLI::App& app, EncoderOptions& options) {
   add_choice<CollisionRule>(
       app, "--collision", rcpcc.collision,
       {{"range", CollisionRule::nearest_range}, {"centre", CollisionRule::nearest_centre}},
-      "Which point a cell keeps: the one nearest to the sensor, or to the "
-      "cell's centre [centre]");
+      "Which point a cell keeps: the one nearest to the cell's centre, or to the "
+      "sensor [centre]");
   app.add_option("--zstd", rcpcc.zstd_level, fmt::format("Level of zstd [{}]", rcpcc.zstd_level))
       ->check(CLI::Range(1, 22).description(""))
       ->type_name("1..22");
@@ -175,6 +175,25 @@ void add_crop_options(CLI::App& app, Crop& crop) {
                  [&crop](const std::array<double, 6>& corners) {
                    crop.robot = box_of(corners, "--crop-robot");
                  });
+}
+
+void require_matching(const CLI::App& app, const EncoderOptions& options) {
+  const auto refuse = [&](const char* option, std::string_view codec) {
+    const CLI::Option* given = app.get_option_no_throw(option);
+    if (given == nullptr || given->count() == 0) return;
+    throw CLI::ValidationError(option, fmt::format("belongs to codec {}; leave it out, or choose "
+                                                   "that codec with --codec {}",
+                                                   codec, codec));
+  };
+  if (options.codec == CodecId::rcpcc) {
+    refuse("--max-error", name(CodecId::beam));
+    return;
+  }
+  for (const char* option :
+       {"--level", "--params", "--block", "--region", "--model", "--unfit", "--quantiser",
+        "--collision", "--zstd", "--fov-elevation", "--fov-azimuth", "--max-range"}) {
+    refuse(option, name(CodecId::rcpcc));
+  }
 }
 
 void require_valid(const EncoderOptions& options) {

@@ -14,6 +14,10 @@ void add_codec_options(CLI::App& app, EncoderOptions& options);
 /// Adds --crop-range, --crop-box and --crop-robot.
 void add_crop_options(CLI::App& app, Crop& crop);
 
+/// To be called when parsing is over: throws CLI::ValidationError where an option was given that
+/// the chosen codec does not have.
+void require_matching(const CLI::App& app, const EncoderOptions& options);
+
 /// To be called when parsing is over: throws CLI::ValidationError where an encoder cannot be made
 /// with these options, so that the command line is refused before any work begins.
 void require_valid(const EncoderOptions& options);

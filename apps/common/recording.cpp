@@ -16,12 +16,12 @@ bool is_control(char c) {
   return byte < 0x20 || byte == 0x7F;
 }
 
+}  // namespace
+
 bool is_plain_file_name(const std::string& name) {
   const auto is_harmful = [](char c) { return is_control(c) || c == '/' || c == '\\'; };
   return name != "." && name != ".." && std::none_of(name.begin(), name.end(), is_harmful);
 }
-
-}  // namespace
 
 Status check_complete(const std::filesystem::path& path, const SweepReader& reader) {
   if (!reader.was_cut()) return {};

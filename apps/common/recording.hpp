@@ -24,6 +24,9 @@ namespace sweepcast::app {
 /// A text from a file, safe for a terminal: control characters become question marks.
 [[nodiscard]] std::string printable(std::string text);
 
+/// Whether a sweep's name can become a file's: no way out of a folder, no control character.
+[[nodiscard]] bool is_plain_file_name(const std::string& name);
+
 /// Names the sweeps of a file so that each can become a file of its own in one folder.
 class SweepNames {
  public:

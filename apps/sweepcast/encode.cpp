@@ -15,6 +15,7 @@
 #include "common/cpu_time.hpp"
 #include "common/inputs.hpp"
 #include "common/progress.hpp"
+#include "common/recording.hpp"
 #include "sweepcast/cloud_file.hpp"
 #include "sweepcast/commands.hpp"
 #include "sweepcast/sweep_file.hpp"
@@ -59,6 +60,17 @@ Result<std::uint64_t> first_sequence(const EncodeOptions& options) {
   const auto existing = SweepReader::open(options.output);
   if (!existing) return tl::unexpected(existing.error());
   return existing->entries().size();
+}
+
+/// Refuses, before any work, inputs whose names no frame could be decoded under.
+Status check_names(const std::vector<fs::path>& inputs) {
+  for (const fs::path& input : inputs) {
+    if (is_plain_file_name(input.stem().string())) continue;
+    return fail(ErrorCode::invalid_argument,
+                fmt::format("{}: its name holds a control character or a backslash; rename it",
+                            printable(input.string())));
+  }
+  return {};
 }
 
 Result<Encoded> encode_one(const fs::path& input, const SweepInfo& info, PointCloud& cloud,
@@ -113,6 +125,7 @@ void report_text(const fs::path& output, const std::vector<Encoded>& frames,
 Status encode(const EncodeOptions& options) {
   const auto inputs = collect_clouds(options.inputs);
   if (!inputs) return tl::unexpected(inputs.error());
+  if (Status names = check_names(*inputs); !names) return names;
   if (Status output = check_output(options.output); !output) return output;
   const auto first = first_sequence(options);
   if (!first) return tl::unexpected(first.error());
@@ -161,12 +174,18 @@ void add_encode(CLI::App& app, Command& command) {
       })
       ->type_name("NAME");
   sub->add_option("--rate", options->rate_hz, "Sweeps per second, for the time stamps [10]")
-      ->check(CLI::Range(1e-3, 1e6).description(""))
+      ->check([](const std::string& text) {
+        double rate = 0.0;
+        const bool is_number = CLI::detail::lexical_cast(text, rate);
+        return is_number && rate >= 1e-3 && rate <= 1e6 ? std::string()
+                                                        : text + " is not between 0.001 and 1e6";
+      })
       ->type_name("HZ");
   sub->add_flag("--append", options->append, "Add to the file, in place, as a recorder does");
   sub->add_flag("--json", options->json, "Print the outcome as JSON");
   sub->footer("Example: sweepcast encode drive/sweeps -o drive.sweep --level 2");
-  sub->callback([options, &command] {
+  sub->callback([options, sub, &command] {
+    require_matching(*sub, options->encoder);
     require_valid(options->encoder);
     command = [options] { return encode(*options); };
   });

@@ -1,4 +1,5 @@
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -88,6 +89,12 @@ Status SweepWriter::State::start_recording() {
                 path.string() + ": cannot be written, its folder does not exist; make the folder");
   }
   if (handle.get() < 0) return io_failure(path, "cannot be written", errno);
+  // Two writers would overwrite each other's frames. The lock goes with the descriptor.
+  if (regular && ::flock(handle.get(), LOCK_EX | LOCK_NB) != 0) {
+    return fail(ErrorCode::io, path.string() +
+                                   ": another program is recording into it; wait for its end, or "
+                                   "record into another file");
+  }
   struct stat info {};
   if (::fstat(handle.get(), &info) != 0) return io_failure(path, "cannot be read", errno);
   recording = Recording{path, std::move(handle), regular};

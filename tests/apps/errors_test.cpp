@@ -45,11 +45,31 @@ TEST_F(ToolTest, VersionListsTheParts) {
 
 TEST_F(ToolTest, WrongCommandLinesAreRefused) {
   write_bin("a.bin", make_room(0.0F));
-  for (const std::string options :
-       {"--bogus", "-o", "--level 6", "--level x", "--params 1,1,1", "--params 1,1,1,1,1",
-        "--params 1,,1,1", "--params nan,1,1,1", "--params 0,1,1,1", "--params 99,1,1,1",
-        "--level 1 --params 1,1,1,1", "--block 5", "--region 7", "--zstd 23", "--codec mp3",
-        "--crop-box 1,1,1,0,0,0", "--crop-range 5", "--fov-elevation 10,-10", "--rate 0"}) {
+  for (const std::string options : {"--bogus",
+                                    "-o",
+                                    "--level 6",
+                                    "--level x",
+                                    "--params 1,1,1",
+                                    "--params 1,1,1,1,1",
+                                    "--params 1,,1,1",
+                                    "--params nan,1,1,1",
+                                    "--params 0,1,1,1",
+                                    "--params 99,1,1,1",
+                                    "--level 1 --params 1,1,1,1",
+                                    "--block 5",
+                                    "--region 7",
+                                    "--zstd 23",
+                                    "--codec mp3",
+                                    "--crop-box 1,1,1,0,0,0",
+                                    "--crop-range 5",
+                                    "--fov-elevation 10,-10",
+                                    "--rate 0",
+                                    "--rate nan",
+                                    "--codec rcpcc --max-error 0.05",
+                                    "--max-error 0.05 --max-range 20",
+                                    "--codec beam --level 1",
+                                    "--max-error 0",
+                                    "--max-error nan"}) {
     expect_failure(run("encode a.bin -o x.sweep " + options), 2, {"see `sweepcast encode --help`"});
   }
   expect_failure(run("decode x.sweep -o back --format obj"), 2, {"obj"});
@@ -182,6 +202,13 @@ TEST_F(ToolTest, NamesCannotLeadOutOfTheFolder) {
   EXPECT_EQ((outcome.err + run("info evil.sweep --frames").out).find('\a'), std::string::npos);
   EXPECT_EQ(list("back"), std::vector<std::string>{"good.bin"});
   EXPECT_EQ(list("."), (std::vector<std::string>{"back", "evil.sweep"}));
+}
+
+TEST_F(ToolTest, EncodeRefusesNamesThatDecodeWouldRefuse) {
+  write_bin("new\nline.bin", make_room(0.0F));
+  const Outcome outcome = run("encode . -o ../x.sweep");
+  expect_failure(outcome, 1, {"new?line.bin", "rename it"});
+  EXPECT_EQ(list(".").size(), 1U);
 }
 
 TEST_F(ToolTest, LabCommandsArePassedThroughUntouched) {

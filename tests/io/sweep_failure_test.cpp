@@ -115,6 +115,17 @@ TEST(SweepFailure, SaysWhereItCannotWrite) {
   }
 }
 
+TEST(SweepFailure, OneRecorderAtATime) {
+  TemporaryFolder folder;
+  auto writer = SweepWriter::open(folder / "a.sweep", Mode::record);
+  ASSERT_TRUE(writer);
+  expect_error(status_of(SweepWriter::open(folder / "a.sweep", Mode::record)), ErrorCode::io,
+               "another program is recording");
+  EXPECT_TRUE(writer->append(make_frame(0, 10), "a"));
+  EXPECT_TRUE(writer->close());
+  EXPECT_TRUE(SweepWriter::open(folder / "a.sweep", Mode::record));
+}
+
 /// While it lives, files of this process cannot grow beyond `bytes`: a stand-in for a full disk.
 class SmallDisk {
  public:
