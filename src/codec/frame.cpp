@@ -95,12 +95,14 @@ void PartList::clear() {
   bytes_.clear();
 }
 
-void PartList::begin(std::uint8_t kind) {
+ByteWriter PartList::begin(std::uint8_t kind) {
   parts_.push_back({kind, bytes_.size()});
+  return ByteWriter(bytes_);
 }
 
 void write_frame(CodecId codec, const SweepInfo& info, const SweepCounts& counts,
                  const PartList& parts, std::vector<std::byte>& frame) {
+  frame.clear();
   ByteWriter out(frame);
   out.put(kFrameMagic);
   out.put(kFrameVersion);
@@ -121,6 +123,11 @@ void write_frame(CodecId codec, const SweepInfo& info, const SweepCounts& counts
   }
   out.put(crc32(frame));
   out.put_bytes(bytes);
+}
+
+bool has_part(const FrameHeader& header, std::uint8_t kind) {
+  return std::any_of(header.parts.begin(), header.parts.end(),
+                     [kind](const FramePart& part) { return part.kind == kind; });
 }
 
 Result<std::span<const std::byte>> checked_part(std::span<const std::byte> frame,

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "core/bytes.hpp"
 #include "sweepcast/frame.hpp"
 
 namespace sweepcast {
@@ -21,8 +22,9 @@ class PartList {
  public:
   void clear();
 
-  /// Begins a part of this kind. Its bytes are what is appended to `bytes()` until the next call.
-  void begin(std::uint8_t kind);
+  /// Begins a part of this kind. Its bytes are what is appended to the writer, or to `bytes()`,
+  /// until the next call.
+  ByteWriter begin(std::uint8_t kind);
   [[nodiscard]] std::vector<std::byte>& bytes() { return bytes_; }
 
  private:
@@ -40,6 +42,9 @@ class PartList {
 /// Assembles a frame. `info.sensor` has at most 255 bytes.
 void write_frame(CodecId codec, const SweepInfo& info, const SweepCounts& counts,
                  const PartList& parts, std::vector<std::byte>& frame);
+
+/// Whether the frame has a part of this kind.
+[[nodiscard]] bool has_part(const FrameHeader& header, std::uint8_t kind);
 
 /// The bytes of part `kind`, after checking that they are all there and undamaged.
 /// Errors: truncated, corrupt.

@@ -12,10 +12,10 @@
 
 namespace sweepcast {
 
-/// Appends to a vector of bytes, which it clears first; the memory is reused.
+/// Appends to a vector of bytes.
 class ByteWriter {
  public:
-  explicit ByteWriter(std::vector<std::byte>& out) : out_(out) { out_.clear(); }
+  explicit ByteWriter(std::vector<std::byte>& out) : out_(out) {}
 
   /// A fixed-width integer, least significant byte first.
   template <class Integer>
@@ -46,8 +46,6 @@ class ByteWriter {
     put(static_cast<std::uint8_t>(text.size()));
     put_bytes(std::as_bytes(std::span(text)));
   }
-
-  [[nodiscard]] std::size_t size() const { return out_.size(); }
 
  private:
   std::vector<std::byte>& out_;

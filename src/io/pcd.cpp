@@ -222,12 +222,10 @@ void write_compressed(const PointCloud& cloud, const std::vector<RecordField>& f
                                        : lzf_compress(columns.data(), size, compressed.data(),
                                                       static_cast<unsigned>(compressed.size()));
   compressed.resize(compressed_size);
-  std::vector<std::byte> sizes;
-  ByteWriter writer(sizes);
+  ByteWriter writer(out);
   writer.put(static_cast<std::uint32_t>(compressed_size));
   writer.put(static_cast<std::uint32_t>(size));
-  out.insert(out.end(), sizes.begin(), sizes.end());
-  out.insert(out.end(), compressed.begin(), compressed.end());
+  writer.put_bytes(compressed);
 }
 
 }  // namespace

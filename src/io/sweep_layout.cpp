@@ -160,6 +160,7 @@ Status walk_records(const ReadAt& read_at, std::uint64_t size, SweepContents& co
 }  // namespace
 
 void write_sweep_head(std::vector<std::byte>& out) {
+  out.clear();
   ByteWriter writer(out);
   writer.put(kHeadMagic);
   writer.put(kVersion);
@@ -168,6 +169,7 @@ void write_sweep_head(std::vector<std::byte>& out) {
 }
 
 void write_record_head(std::size_t frame_size, std::string_view name, std::vector<std::byte>& out) {
+  out.clear();
   ByteWriter writer(out);
   writer.put(static_cast<std::uint32_t>(frame_size));
   writer.put_text(name);
@@ -175,6 +177,7 @@ void write_record_head(std::size_t frame_size, std::string_view name, std::vecto
 }
 
 void write_sweep_index(const std::vector<SweepEntry>& entries, std::vector<std::byte>& out) {
+  out.clear();
   ByteWriter writer(out);
   writer.put(kIndexMarker);
   writer.put_varint(entries.size());

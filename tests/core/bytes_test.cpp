@@ -21,7 +21,7 @@ TEST(ByteWriter, WritesLittleEndian) {
   ByteWriter out(bytes);
   out.put(std::uint32_t{0x01020304});
   out.put(std::int16_t{-2});
-  EXPECT_EQ(out.size(), 6U);
+  EXPECT_EQ(bytes.size(), 6U);
   EXPECT_EQ(bytes, bytes_of({4, 3, 2, 1, 0xFE, 0xFF}));
 }
 

@@ -68,7 +68,6 @@ class Encoder {
   std::vector<std::int32_t> range_, azimuth_, height_;  ///< the image, columns aligned by azimuth
   LayerCoder layers_;
   std::vector<LatticePoint> lattice_;
-  std::vector<std::byte> bytes_;
 };
 
 /// Makes clouds of frames; keeps the sensor models that it has seen.

@@ -51,10 +51,7 @@ Status Decoder::decode(std::span<const std::byte> frame, const FrameHeader& head
     if (Status status = read_layers(frame, header, layers); !status) return status;
     unprojector_->unproject(image_, cloud);
   }
-  const bool has_extras = std::any_of(
-      header.parts.begin(), header.parts.end(),
-      [](const FramePart& part) { return part.kind == static_cast<std::uint8_t>(Part::extras); });
-  if (!has_extras) return {};
+  if (!has_part(header, static_cast<std::uint8_t>(Part::extras))) return {};
   const auto extras = checked_part(frame, header, static_cast<std::uint8_t>(Part::extras));
   if (!extras) return tl::unexpected(extras.error());
   if (!read_extras(*extras, header.counts.points_coded, cloud)) {
@@ -64,10 +61,7 @@ Status Decoder::decode(std::span<const std::byte> frame, const FrameHeader& head
 }
 
 Status Decoder::read_model_part(std::span<const std::byte> frame, const FrameHeader& header) {
-  const bool present = std::any_of(
-      header.parts.begin(), header.parts.end(),
-      [](const FramePart& part) { return part.kind == static_cast<std::uint8_t>(Part::model); });
-  if (!present) return {};
+  if (!has_part(header, static_cast<std::uint8_t>(Part::model))) return {};
   const auto bytes = checked_part(frame, header, static_cast<std::uint8_t>(Part::model));
   if (!bytes) return tl::unexpected(bytes.error());
   const std::uint32_t id = crc32(*bytes);

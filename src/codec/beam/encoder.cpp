@@ -100,9 +100,10 @@ void Encoder::learn_model(const CloudView& cloud) {
   projector_.emplace(*model_);
   unprojector_.emplace(*model_);
   frames_since_model_ = options_.model_interval;
-  ByteWriter out(bytes_);
+  std::vector<std::byte> bytes;
+  ByteWriter out(bytes);
   write_model(*model_, out);
-  model_id_ = crc32(bytes_);
+  model_id_ = crc32(bytes);
 }
 
 void Encoder::project(const CloudView& cloud, SweepCounts& counts) {
@@ -193,14 +194,12 @@ void Encoder::write_model_part(PartList& parts) {
     return;
   }
   frames_since_model_ = 1;
-  ByteWriter out(bytes_);
+  ByteWriter out = parts.begin(static_cast<std::uint8_t>(Part::model));
   write_model(*model_, out);
-  parts.begin(static_cast<std::uint8_t>(Part::model));
-  parts.bytes().insert(parts.bytes().end(), bytes_.begin(), bytes_.end());
 }
 
 void Encoder::write_grid(PartList& parts) {
-  ByteWriter out(bytes_);
+  ByteWriter out = parts.begin(static_cast<std::uint8_t>(Part::grid));
   out.put_varint(as_unsigned(image_.cols));
   if (image_.cols > 0) {
     out.put(model_id_);
@@ -213,8 +212,6 @@ void Encoder::write_grid(PartList& parts) {
     out.put(static_cast<std::uint8_t>(image_.motion ? 1 : 0));
     if (image_.motion) write_motion(*image_.motion, out);
   }
-  parts.begin(static_cast<std::uint8_t>(Part::grid));
-  parts.bytes().insert(parts.bytes().end(), bytes_.begin(), bytes_.end());
   if (image_.cols == 0) return;
   parts.begin(static_cast<std::uint8_t>(Part::firings));
   write_firings(image_.firing_tick, parts.bytes());
@@ -253,11 +250,9 @@ void Encoder::write_extras(PartList& parts, SweepCounts& counts) {
   }
   counts.points_coded += static_cast<std::uint32_t>(lattice_.size());
   if (lattice_.empty()) return;
-  ByteWriter out(bytes_);
+  ByteWriter out = parts.begin(static_cast<std::uint8_t>(Part::extras));
   out.put_varint(lattice_.size());
   out.put_varint(as_unsigned(step));
-  parts.begin(static_cast<std::uint8_t>(Part::extras));
-  parts.bytes().insert(parts.bytes().end(), bytes_.begin(), bytes_.end());
   write_octree(lattice_, parts.bytes());
 }
 

@@ -2,8 +2,12 @@
 // between rows or columns that are known.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
+
+#include "codec/beam/neighbourhood.hpp"
 
 namespace sweepcast::beam {
 
@@ -33,5 +37,38 @@ struct LatticeStep {
   }
   return steps;
 }
+
+/// Steps of the lattice that make up a layer, [first, last): layer 0 is the base with all rows of
+/// its columns, each further layer the columns half way between.
+[[nodiscard]] inline std::pair<std::uint32_t, std::uint32_t> steps_of(
+    const std::vector<LatticeStep>& lattice, int layer) {
+  std::uint32_t base = 1;
+  while (base < lattice.size() && lattice[base].kind == LatticeStep::Kind::rows) ++base;
+  if (layer == 0) return {0, base};
+  const auto step = base + static_cast<std::uint32_t>(layer) - 1;
+  return {step, step + 1};
+}
+
+/// Which rows and columns a step adds, and where their neighbours are.
+struct Traversal {
+  int first_row, row_stride, first_col, col_stride;
+  Neighbourhood neighbours;
+
+  Traversal(const LatticeStep& step, std::uint32_t number, std::ptrdiff_t pitch)
+      : first_row(0),
+        row_stride(step.row_stride),
+        first_col(0),
+        col_stride(step.col_stride),
+        neighbours{step.col_stride, step.row_stride * pitch, 32'768, number} {
+    if (step.kind == LatticeStep::Kind::columns) {
+      first_col = step.col_stride;
+      col_stride *= 2;
+    } else if (step.kind == LatticeStep::Kind::rows) {
+      first_row = step.row_stride;
+      row_stride *= 2;
+      std::swap(neighbours.along, neighbours.across);
+    }
+  }
+};
 
 }  // namespace sweepcast::beam

@@ -23,28 +23,6 @@ std::uint32_t row_weight(const std::vector<std::int32_t>& elevation, int row, in
   return static_cast<std::uint32_t>(part * 65'536 / whole);
 }
 
-// Which rows and columns a step adds, and where their neighbours are.
-struct Traversal {
-  int first_row, row_stride, first_col, col_stride;
-  Neighbourhood neighbours;
-
-  Traversal(const LatticeStep& step, std::uint32_t number, std::ptrdiff_t pitch)
-      : first_row(0),
-        row_stride(step.row_stride),
-        first_col(0),
-        col_stride(step.col_stride),
-        neighbours{step.col_stride, step.row_stride * pitch, 32'768, number} {
-    if (step.kind == LatticeStep::Kind::columns) {
-      first_col = step.col_stride;
-      col_stride *= 2;
-    } else if (step.kind == LatticeStep::Kind::rows) {
-      first_row = step.row_stride;
-      row_stride *= 2;
-      std::swap(neighbours.along, neighbours.across);
-    }
-  }
-};
-
 // Whether damaged bytes have ended, so that a few of them cannot keep the decoder busy for long.
 bool ran_dry(const RangeDecoder& coder) {
   return coder.overran();
@@ -131,15 +109,6 @@ class ResidualCoder {
   std::uint32_t last_negative_ = 0;
 };
 
-// Steps of the lattice that belong to a layer: [first, last).
-std::pair<std::uint32_t, std::uint32_t> steps_of(const LayerPlan& plan, int layer) {
-  std::uint32_t base = 1;
-  while (base < plan.lattice.size() && plan.lattice[base].kind == LatticeStep::Kind::rows) ++base;
-  if (layer == 0) return {0, base};
-  const auto step = base + static_cast<std::uint32_t>(layer) - 1;
-  return {step, step + 1};
-}
-
 }  // namespace
 
 struct LayerCoder::Models {
@@ -162,7 +131,7 @@ void LayerCoder::begin(const LayerPlan& plan) {
 }
 
 int LayerCoder::layers(const LayerPlan& plan) {
-  const std::uint32_t base = steps_of(plan, 0).second;
+  const std::uint32_t base = steps_of(plan.lattice, 0).second;
   return 1 + static_cast<int>(plan.lattice.size() - base);
 }
 
@@ -181,7 +150,7 @@ void LayerCoder::for_each_point(std::uint32_t number, Visit visit) {
 
 void LayerCoder::encode(int layer, const LayerValues& values, std::vector<std::byte>& out) {
   RangeEncoder coder(out);
-  const auto [first, last] = steps_of(plan_, layer);
+  const auto [first, last] = steps_of(plan_.lattice, layer);
   for (std::uint32_t step = first; step < last; ++step) {
     code_step(coder, models_->cells, image_, plan_, step, values.range.data());
     if (values.azimuth.empty()) continue;
@@ -196,7 +165,7 @@ void LayerCoder::encode(int layer, const LayerValues& values, std::vector<std::b
 bool LayerCoder::decode(int layer, std::span<const std::byte> bytes,
                         const LayerResiduals& residuals) {
   RangeDecoder coder(bytes);
-  const auto [first, last] = steps_of(plan_, layer);
+  const auto [first, last] = steps_of(plan_.lattice, layer);
   for (std::uint32_t step = first; step < last; ++step) {
     code_step(coder, models_->cells, image_, plan_, step, nullptr);
     if (coder.overran()) return false;

@@ -29,10 +29,7 @@ ZstdEncoder::ZstdEncoder(int level) : context_(ZSTD_createCCtx()) {
 }
 
 void ZstdEncoder::append(std::span<const std::byte> raw, std::vector<std::byte>& out) {
-  for (std::size_t size = raw.size();; size >>= 7) {
-    out.push_back(static_cast<std::byte>(size < 0x80 ? size : (size & 0x7F) | 0x80));
-    if (size < 0x80) break;
-  }
+  ByteWriter(out).put_varint(raw.size());
   if (raw.empty()) return;
   const std::size_t begin = out.size();
   out.resize(begin + ZSTD_compressBound(raw.size()));

@@ -136,6 +136,7 @@ Status Encoder::encode(const CloudView& cloud, PartList& parts, SweepCounts& cou
 
 template <class Write>
 void Encoder::pack(Part part, PartList& parts, Write write) {
+  raw_.clear();
   ByteWriter out(raw_);
   write(out);
   parts.begin(static_cast<std::uint8_t>(part));
