@@ -16,13 +16,12 @@ std::vector<std::byte> bytes_of(std::initializer_list<int> values) {
   return bytes;
 }
 
-TEST(ByteWriter, WritesLittleEndian) {
-  std::vector<std::byte> bytes(9);
+TEST(ByteWriter, AppendsLittleEndian) {
+  std::vector<std::byte> bytes = bytes_of({7});
   ByteWriter out(bytes);
   out.put(std::uint32_t{0x01020304});
   out.put(std::int16_t{-2});
-  EXPECT_EQ(bytes.size(), 6U);
-  EXPECT_EQ(bytes, bytes_of({4, 3, 2, 1, 0xFE, 0xFF}));
+  EXPECT_EQ(bytes, bytes_of({7, 4, 3, 2, 1, 0xFE, 0xFF}));
 }
 
 TEST(ByteWriter, WritesVarintsAsLeb128) {
