@@ -69,9 +69,17 @@ struct RcpccOptions {
   int zstd_level = 1;  ///< 1 to 22; docs/rcpcc.md has what each costs
 };
 
+/// How much time codec `beam` spends to save bytes. Decoding takes about as long as encoding.
+enum class Effort : std::uint8_t {
+  fast,    ///< one context a decision
+  normal,  ///< several, mixed
+  best,    ///< more of them
+};
+
 /// Options of codec `beam`.
 struct BeamOptions {
   double max_error_m = 0.05;  ///< no point decodes farther from its place, metres, 0.001 to 2
+  Effort effort = Effort::normal;
   int model_interval = 10;    ///< every how many frames the sensor's model is sent, at least 1
 };
 

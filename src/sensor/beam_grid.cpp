@@ -6,7 +6,7 @@
 
 #include "core/trig.hpp"
 #include "sensor/beam_columns.hpp"
-#include "sensor/beam_lines.hpp"
+#include "sensor/beam_locate.hpp"
 #include "sensor/motion.hpp"
 
 namespace sweepcast {
@@ -14,26 +14,11 @@ namespace {
 
 constexpr double kTurn = 2.0 * kPi;
 constexpr float kInverseTurn = static_cast<float>(1.0 / kTurn);
-constexpr std::size_t kBatch = 512;
-constexpr float kMaxRange = 1.0e5F;  // metres: 0.1 mm of it fit 32 bits
-
-// Nearest integer; the compiler makes one instruction of it, which std::lround is not.
-std::int32_t nearest(float value) {
-  return static_cast<std::int32_t>(value + (value < 0.0F ? -0.5F : 0.5F));
+constexpr std::size_t kBatch = LocatedPoints::kSize;
+ExtraReason why_lost(float x, float y, float z) {
+  if (!(std::isfinite(x) && std::isfinite(y) && std::isfinite(z))) return ExtraReason::not_finite;
+  return x == 0.0F && y == 0.0F && z == 0.0F ? ExtraReason::zero_range : ExtraReason::stray;
 }
-
-std::vector<BeamLine> lines_of(const std::vector<BeamGeometry>& beams) {
-  std::vector<BeamLine> lines;
-  lines.reserve(beams.size());
-  for (const BeamGeometry& beam : beams) lines.push_back({beam.tan, beam.height_m, 0});
-  return lines;
-}
-
-// What projection needs of a beam, in floats, side by side.
-struct FloatBeam {
-  float tan, inverse_slant, height, lateral, phase;
-  std::int32_t lag;
-};
 
 }  // namespace
 
@@ -66,17 +51,15 @@ struct BeamProjector::State {
   };
 
   explicit State(const SensorModel& sensor)
-      : model(sensor), geometry(beam_geometry(sensor)), table(lines_of(geometry)) {
-    for (std::size_t k = 0; k < geometry.size(); ++k) {
-      const BeamGeometry& g = geometry[k];
-      beams.push_back({static_cast<float>(g.tan), static_cast<float>(g.inverse_slant),
-                       static_cast<float>(g.height_m), static_cast<float>(g.lateral_m),
-                       static_cast<float>(g.phase), model.beams[k].lag});
-    }
-  }
+      : model(sensor), geometry(beam_geometry(sensor)), locator(sensor) {}
 
+  void use_copies() {
+    px = x;
+    py = y;
+    pz = z;
+  }
   void locate(std::size_t count, const BeamGridOptions& options);
-  void locate_batch(std::size_t begin, std::size_t end, float max_miss);
+  void locate_batch(std::size_t begin, std::size_t end, const BeamGridOptions& options);
   void undo_motion(const Motion& motion, std::size_t begin, std::size_t end);
   void drop_mistimed(const Motion& motion);
   void fill(const BeamGridOptions& options, BeamImage& image);
@@ -89,13 +72,14 @@ struct BeamProjector::State {
 
   SensorModel model;
   std::vector<BeamGeometry> geometry;
-  std::vector<FloatBeam> beams;
-  LineTable table;
+  BeamLocator locator;
+  LocatedPoints located;
   ColumnFinder columns;
 
   std::span<const std::uint32_t> subset;
-  std::vector<float> x, y, z;
-  std::vector<float> times;  // of deskewed points
+  std::span<const float> px, py, pz;  // the points, in the sensor's frame
+  std::vector<float> x, y, z;         // the same, where they had to be copied or moved
+  std::vector<float> times;           // of deskewed points
   std::vector<Sample> samples;
   std::vector<FiringPlace> places;
   std::vector<ExtraReason> reasons;      // of points without a place
@@ -104,53 +88,19 @@ struct BeamProjector::State {
 };
 
 // Beam, tick and range of points [begin, end).
-void BeamProjector::State::locate_batch(std::size_t begin, std::size_t end, float max_miss) {
-  std::array<float, kBatch> rhos;
-  std::array<float, kBatch> inverses;
-  std::array<float, kBatch> turns;
-  const auto ticks = static_cast<float>(model.ticks_per_turn);
+void BeamProjector::State::locate_batch(std::size_t begin, std::size_t end,
+                                        const BeamGridOptions& options) {
   const std::size_t count = end - begin;
+  locator.locate(px.subspan(begin, count), py.subspan(begin, count), pz.subspan(begin, count),
+                 static_cast<float>(options.max_height_residual_m), located);
   for (std::size_t i = 0; i < count; ++i) {
-    const float px = x[begin + i];
-    const float py = y[begin + i];
-    rhos[i] = std::sqrt(px * px + py * py);
-    inverses[i] = 1.0F / rhos[i];
-    turns[i] = arc_tangent_fast(py, px) * kInverseTurn;
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    const float rho = rhos[i];
-    const float pz = z[begin + i];
-    FiringPlace& place = places[begin + i];
-    place.tick = -1;
-    if (!(rho < kMaxRange && pz < kMaxRange && pz > -kMaxRange)) {
-      const bool finite =
-          std::isfinite(x[begin + i]) && std::isfinite(y[begin + i]) && std::isfinite(pz);
-      reasons[begin + i] = finite ? ExtraReason::stray : ExtraReason::not_finite;
-      continue;
-    }
-    if (rho < 1e-4F) {
-      reasons[begin + i] = pz == 0.0F ? ExtraReason::zero_range : ExtraReason::stray;
-      continue;
-    }
-    const std::size_t k = table.nearest(rho, pz, inverses[i]);
-    const FloatBeam& beam = beams[k];
-    const float above = pz - beam.height;
-    const float error = above - rho * beam.tan;
-    const float along = (rho + above * beam.tan) * beam.inverse_slant;
-    const std::int32_t range = nearest(along * kRangeUnits);
-    const float q = beam.lateral * inverses[i];
-    if (std::abs(error) > max_miss || range <= 0 || range > (1 << 30) || std::abs(q) > 0.5F) {
-      reasons[begin + i] = ExtraReason::stray;
-      continue;
-    }
-    const float aside = (q + q * q * q * (1.0F / 6.0F)) * kInverseTurn;  // arc sine
-    const float at = (turns[i] - aside) * ticks - beam.phase;
-    const std::int32_t tick = nearest(at);
-    std::int32_t firing = tick - beam.lag;  // at most two turns off
-    while (firing < 0) firing += model.ticks_per_turn;
-    while (firing >= model.ticks_per_turn) firing -= model.ticks_per_turn;
-    place = {firing, static_cast<std::uint16_t>(k)};
-    samples[begin + i] = {rho, error, at - static_cast<float>(tick), range};
+    samples[begin + i] = {located.rho[i], located.height_error[i], located.miss[i],
+                          located.range[i]};
+    const bool found = located.found[i] != 0 && located.range[i] >= options.nearest &&
+                       located.range[i] <= options.farthest;
+    places[begin + i] = {found ? located.firing[i] : -1,
+                         static_cast<std::uint16_t>(located.beam[i])};
+    if (!found) reasons[begin + i] = why_lost(px[begin + i], py[begin + i], pz[begin + i]);
   }
 }
 
@@ -161,29 +111,29 @@ void BeamProjector::State::undo_motion(const Motion& motion, std::size_t begin, 
   const Twist<float> twist(motion);
   const float zero =
       static_cast<float>(motion.zero_tick) / static_cast<float>(model.ticks_per_turn);
-  std::array<float, kBatch> px;
-  std::array<float, kBatch> py;
-  std::array<float, kBatch> pz;
+  std::array<float, kBatch> sx;
+  std::array<float, kBatch> sy;
+  std::array<float, kBatch> sz;
   const std::size_t count = end - begin;
-  std::copy(&x[begin], &x[begin] + count, px.begin());
-  std::copy(&y[begin], &y[begin] + count, py.begin());
+  std::copy(&x[begin], &x[begin] + count, sx.begin());
+  std::copy(&y[begin], &y[begin] + count, sy.begin());
   for (int round = 0; round < 4; ++round) {
     for (std::size_t i = 0; i < count; ++i) {
-      float time = arc_tangent_fast(py[i], px[i]) * kInverseTurn - zero;
+      float time = arc_tangent_fast(sy[i], sx[i]) * kInverseTurn - zero;
       time = time >= 0.5F ? time - 1.0F : time;
       time = time < -0.5F ? time + 1.0F : time;
       const auto p = twist.undo({x[begin + i], y[begin + i], z[begin + i]}, time);
       times[begin + i] = time;
-      px[i] = p[0];
-      py[i] = p[1];
-      pz[i] = p[2];
+      sx[i] = p[0];
+      sy[i] = p[1];
+      sz[i] = p[2];
     }
   }
   for (std::size_t i = 0; i < count; ++i) {
     const bool origin = x[begin + i] == 0.0F && y[begin + i] == 0.0F;  // "no return" stays
-    x[begin + i] = origin ? 0.0F : px[i];
-    y[begin + i] = origin ? 0.0F : py[i];
-    z[begin + i] = origin ? z[begin + i] : pz[i];
+    x[begin + i] = origin ? 0.0F : sx[i];
+    y[begin + i] = origin ? 0.0F : sy[i];
+    z[begin + i] = origin ? z[begin + i] : sz[i];
   }
 }
 
@@ -195,7 +145,7 @@ void BeamProjector::State::locate(std::size_t count, const BeamGridOptions& opti
   for (std::size_t begin = 0; begin < count; begin += kBatch) {
     const std::size_t end = std::min(begin + kBatch, count);
     if (options.motion) undo_motion(*options.motion, begin, end);
-    locate_batch(begin, end, static_cast<float>(options.max_height_residual_m));
+    locate_batch(begin, end, options);
   }
   if (options.motion) drop_mistimed(*options.motion);
 }
@@ -206,7 +156,7 @@ void BeamProjector::State::drop_mistimed(const Motion& motion) {
   for (std::size_t i = 0; i < places.size(); ++i) {
     if (places[i].tick < 0) continue;
     const BeamGeometry& g = geometry[places[i].beam];
-    const std::int32_t tick = places[i].tick + beams[places[i].beam].lag;
+    const std::int32_t tick = places[i].tick + model.beams[places[i].beam].lag;
     const double time = motion_time(tick, motion, model.ticks_per_turn) +
                         g.phase / model.ticks_per_turn + lateral_turns(g, samples[i].rho);
     if (std::abs(time - times[i]) < 0.25) continue;
@@ -227,9 +177,9 @@ bool BeamProjector::State::takes(std::size_t i, const BeamImage& image, std::siz
 
 void BeamProjector::State::fill(const BeamGridOptions& options, BeamImage& image) {
   const int jitter = options.max_error_m > 0.0 ? model.jitter : 0;
-  const auto column_of = columns.find(places, model.ticks_per_turn, static_cast<int>(beams.size()),
-                                      jitter, image.firing_tick);
-  image.rows = static_cast<int>(beams.size());
+  const auto column_of = columns.find(places, model.ticks_per_turn,
+                                      static_cast<int>(geometry.size()), jitter, image.firing_tick);
+  image.rows = static_cast<int>(geometry.size());
   image.cols = static_cast<int>(image.firing_tick.size());
   image.range.assign(image.cells(), 0);
   image.point.assign(image.cells(), kNoPoint);
@@ -267,24 +217,29 @@ void BeamProjector::State::fill(const BeamGridOptions& options, BeamImage& image
 void BeamProjector::State::bound_errors(double max_error, BeamImage& image) {
   misfits.clear();
   const double tick = kTurn / model.ticks_per_turn;
+  const auto tick_size = static_cast<float>(tick);
+  const auto bound = static_cast<float>(max_error * max_error);
   float farthest = 0.0F;
-  for (std::size_t cell = 0; cell < image.cells(); ++cell) {
-    if (image.range[cell] == 0) continue;
-    const std::size_t i = sample_of[cell];
-    const Sample& s = samples[i];
-    const std::int32_t firing = image.firing_tick[cell % static_cast<std::size_t>(image.cols)];
-    const double ticks = places[i].tick - firing + static_cast<double>(s.miss);
-    const double aside = ticks * tick * s.rho;
-    const double above = s.height_error * geometry[places[i].beam].inverse_slant;
-    if (aside * aside + above * above <= max_error * max_error) continue;
-    misfits.push_back(static_cast<std::uint32_t>(cell));
-    farthest = std::max(farthest, s.rho);
+  std::uint32_t cell = 0;
+  for (int row = 0; row < image.rows; ++row) {
+    const auto slope = static_cast<float>(geometry[static_cast<std::size_t>(row)].inverse_slant);
+    for (int col = 0; col < image.cols; ++col, ++cell) {
+      if (image.range[cell] == 0) continue;
+      const std::size_t i = sample_of[cell];
+      const Sample& s = samples[i];
+      const std::int32_t off = places[i].tick - image.firing_tick[static_cast<std::size_t>(col)];
+      const float aside = (static_cast<float>(off) + s.miss) * tick_size * s.rho;
+      const float above = s.height_error * slope;
+      if (aside * aside + above * above <= bound) continue;
+      misfits.push_back(cell);
+      farthest = std::max(farthest, s.rho);
+    }
   }
   if (misfits.size() * 1000 <= places.size()) {
-    for (const std::uint32_t cell : misfits) {
-      image.extras.push_back({image.point[cell], ExtraReason::misfit});
-      image.range[cell] = 0;
-      image.point[cell] = kNoPoint;
+    for (const std::uint32_t misfit : misfits) {
+      image.extras.push_back({image.point[misfit], ExtraReason::misfit});
+      image.range[misfit] = 0;
+      image.point[misfit] = kNoPoint;
     }
     return;
   }
@@ -294,9 +249,10 @@ void BeamProjector::State::bound_errors(double max_error, BeamImage& image) {
   image.azimuth_divisor = static_cast<std::int32_t>(std::clamp(divisor, 1.0, 4096.0));
   image.azimuth_residual.assign(image.cells(), 0);
   image.height_residual.assign(image.cells(), 0);
-  for (const std::uint32_t cell : misfits) {
-    const std::size_t i = sample_of[cell];
-    residuals_of(cell, i, image.firing_tick[cell % static_cast<std::size_t>(image.cols)], image);
+  for (const std::uint32_t misfit : misfits) {
+    const std::size_t i = sample_of[misfit];
+    residuals_of(misfit, i, image.firing_tick[misfit % static_cast<std::size_t>(image.cols)],
+                 image);
   }
 }
 
@@ -320,6 +276,24 @@ BeamProjector::BeamProjector(BeamProjector&&) noexcept = default;
 BeamProjector& BeamProjector::operator=(BeamProjector&&) noexcept = default;
 BeamProjector::~BeamProjector() = default;
 
+void BeamProjector::project(std::span<const float> x, std::span<const float> y,
+                            std::span<const float> z, const BeamGridOptions& options,
+                            BeamImage& image) {
+  State& s = *state_;
+  s.subset = {};
+  s.px = x;
+  s.py = y;
+  s.pz = z;
+  if (options.motion) {
+    s.x.assign(x.begin(), x.end());
+    s.y.assign(y.begin(), y.end());
+    s.z.assign(z.begin(), z.end());
+    s.use_copies();
+  }
+  s.locate(x.size(), options);
+  s.fill(options, image);
+}
+
 void BeamProjector::project(const CloudView& cloud, const BeamGridOptions& options,
                             BeamImage& image) {
   State& s = *state_;
@@ -328,6 +302,7 @@ void BeamProjector::project(const CloudView& cloud, const BeamGridOptions& optio
   cloud.x.read(0, s.x);
   cloud.y.read(0, s.y);
   cloud.z.read(0, s.z);
+  s.use_copies();
   s.locate(cloud.size, options);
   s.fill(options, image);
 }
@@ -341,6 +316,7 @@ void BeamProjector::project(const CloudView& cloud, std::span<const std::uint32_
     s.y[i] = static_cast<float>(cloud.y.at(points[i]));
     s.z[i] = static_cast<float>(cloud.z.at(points[i]));
   }
+  s.use_copies();
   s.locate(points.size(), options);
   s.subset = points;
   s.fill(options, image);

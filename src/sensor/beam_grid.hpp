@@ -67,6 +67,9 @@ struct BeamGridOptions {
   double max_error_m = 0.0;
   /// A point farther from every beam is a stray; metres, height.
   double max_height_residual_m = 0.5;
+  /// Points with ranges outside are strays; 0.1 mm.
+  std::int32_t nearest = 1;
+  std::int32_t farthest = 1 << 30;
   /// What the sweep was deskewed by, to be undone; copied into the image.
   std::optional<Motion> motion;
 };
@@ -89,6 +92,10 @@ class BeamProjector {
   /// Fills `image` with the points of `cloud`; every point is in exactly one cell or extra. Where
   /// two points want a cell, the one nearer to its azimuth has it, of equal ones the first.
   void project(const CloudView& cloud, const BeamGridOptions& options, BeamImage& image);
+
+  /// The same of points whose coordinates are columns already.
+  void project(std::span<const float> x, std::span<const float> y, std::span<const float> z,
+               const BeamGridOptions& options, BeamImage& image);
 
   /// The same of some points only (indices into `cloud`), as of the extras of an image: the second
   /// returns of a sweep make an image of their own.

@@ -236,7 +236,7 @@ LineTable::LineTable(std::span<const BeamLine> lines) {
            std::abs(lines[k + 1].tan - slope) < std::abs(lines[k].tan - slope)) {
       ++k;
     }
-    start_[static_cast<std::size_t>(i)] = static_cast<std::uint16_t>(k + 1);
+    start_[static_cast<std::size_t>(i)] = static_cast<std::int32_t>(k + 1);
   }
 }
 

@@ -53,41 +53,59 @@ class LineTable {
   /// Lines ordered by falling tangent; at least one.
   explicit LineTable(std::span<const BeamLine> lines);
 
-  /// Index of the line nearest to (rho, z), rho above 0; `inverse` is 1 / rho.
-  [[nodiscard]] std::size_t nearest(float rho, float z, float inverse) const {
-    const float at = (top_ - (z - height_) * inverse) * scale_;
-    const float clamped = at < 0.0F ? 0.0F : (at > last_ ? last_ : at);
-    std::size_t k = start_[static_cast<std::size_t>(static_cast<std::int32_t>(clamped))];
-    // Mostly it is the one that the table says, or the next; one branch that tells is predictable.
-    float here = distance(k, rho, z);
-    const float above = distance(k - 1, rho, z);
-    const float below = distance(k + 1, rho, z);
-    if ((here <= above) & (here <= below)) return k - 1;
-    const std::size_t step = above < below ? std::size_t(0) - 1 : 1;
-    float next = std::min(above, below);
-    while (next < here) {
+  /// What `guess` needs, as a copy, so that loops around it vectorise.
+  struct Line {
+    float tan, height;
+  };
+  struct View {
+    const std::int32_t* start;
+    const Line* lines;
+    float top, scale, last, height;
+
+    /// The best of the three lines around the one that the table says for (rho, z), rho above 0;
+    /// `inverse` is 1 / rho. Mostly it is the nearest.
+    [[nodiscard]] std::int32_t guess(float rho, float z, float inverse) const {
+      const float at = (top - (z - height) * inverse) * scale;
+      const float from_top = at > 0.0F ? at : 0.0F;
+      const float clamped = from_top < last ? from_top : last;
+      const std::int32_t k = start[static_cast<std::int32_t>(clamped)];
+      const float here = distance(k, rho, z);
+      const float above = distance(k - 1, rho, z);
+      const float below = distance(k + 1, rho, z);
+      const std::int32_t other = above < below ? -1 : 1;
+      const float nearer = above < below ? above : below;
+      return (nearer < here ? other : 0) + k - 1;
+    }
+    [[nodiscard]] float distance(std::int32_t k, float rho, float z) const {
+      return std::abs(z - (rho * lines[k].tan + lines[k].height));
+    }
+  };
+  [[nodiscard]] View view() const {
+    return {start_.data(), lines_.data(), top_, scale_, last_, height_};
+  }
+
+  /// Index of the nearest line, from a guess near it.
+  [[nodiscard]] std::int32_t walk(std::int32_t line, float rho, float z) const {
+    const View table = view();
+    std::int32_t k = line + 1;
+    float here = table.distance(k, rho, z);
+    const std::int32_t step = table.distance(k - 1, rho, z) < here ? -1 : 1;
+    for (float next = table.distance(k + step, rho, z); next < here;
+         next = table.distance(k + step, rho, z)) {
       k += step;
       here = next;
-      next = distance(k + step, rho, z);
     }
     return k - 1;
   }
 
+  /// Index of the line nearest to (rho, z), rho above 0.
   [[nodiscard]] std::size_t nearest(float rho, float z) const {
-    return nearest(rho, z, 1.0F / rho);
+    return static_cast<std::size_t>(walk(view().guess(rho, z, 1.0F / rho), rho, z));
   }
 
  private:
-  [[nodiscard]] float distance(std::size_t k, float rho, float z) const {
-    return std::abs(z - (rho * lines_[k].tan + lines_[k].height));
-  }
-
-  struct Line {
-    float tan, height;
-  };
-
-  std::vector<Line> lines_;           // a line beyond reach at either end
-  std::vector<std::uint16_t> start_;  // index in lines_
+  std::vector<Line> lines_;          // a line beyond reach at either end
+  std::vector<std::int32_t> start_;  // index in lines_
   float top_ = 0.0F, scale_ = 1.0F, last_ = 0.0F, height_ = 0.0F;
 };
 

@@ -5,6 +5,11 @@
 
 namespace sweepcast {
 
+/// Whether the crop can leave anything out.
+[[nodiscard]] inline bool crops(const Crop& crop) {
+  return crop.min_range > 0.0F || crop.max_range > 0.0F || crop.keep || crop.robot;
+}
+
 [[nodiscard]] inline bool is_inside(const Box& box, float x, float y, float z) {
   return x >= box.min_x && x <= box.max_x && y >= box.min_y && y <= box.max_y && z >= box.min_z &&
          z <= box.max_z;

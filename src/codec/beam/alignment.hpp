@@ -25,11 +25,10 @@ namespace sweepcast::beam {
 }
 
 /// Sets what encoder and decoder must agree on.
-inline void set_plan(const SensorModel& model, int cols, std::int32_t step, int base_rows,
-                     int base_cols, LayerPlan& plan) {
+inline void set_plan(const SensorModel& model, int cols, int base_rows, int base_cols,
+                     LayerPlan& plan) {
   plan.rows = static_cast<int>(model.beams.size());
   plan.cols = cols;
-  plan.step = step;
   plan.lattice = make_lattice(base_rows, base_cols);
   plan.elevation.clear();
   for (const Beam& beam : model.beams) plan.elevation.push_back(beam.tan_elevation);

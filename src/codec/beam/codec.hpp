@@ -2,6 +2,7 @@
 // and one range for each point, coded coarse to fine within an error bound.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -32,6 +33,12 @@ enum class Part : std::uint8_t {
 
 [[nodiscard]] Status check(const BeamOptions& options);
 
+/// Cells that an image of a sweep of so many points may have; a sweep that would need more has no
+/// image. So a decoder allocates no more than a few hundred bytes for each point announced.
+[[nodiscard]] constexpr std::size_t most_cells(std::size_t points) {
+  return std::min((std::size_t{1} << 20) + 16 * points, std::size_t{1} << 24);
+}
+
 /// Makes parts of sweeps; keeps its buffers, and the sensor's model from sweep to sweep.
 class Encoder {
  public:
@@ -44,6 +51,8 @@ class Encoder {
  private:
   void learn_model(const CloudView& cloud);
   void project(const CloudView& cloud, SweepCounts& counts);
+  void choose(SweepCounts& counts);
+  void list_as_extras();
   void keep_bound();
   void plan_layers();
   void write_model_part(PartList& parts);
@@ -61,7 +70,7 @@ class Encoder {
   int frames_since_model_ = 0;
   std::uint32_t model_id_ = 0;
   std::vector<float> x_, y_, z_;       ///< of the cloud
-  std::vector<std::uint32_t> chosen_;  ///< points that the crop leaves
+  std::vector<std::uint32_t> chosen_;  ///< points that the crop leaves, where it takes any
   BeamImage image_;
   PointCloud placed_;
   LayerPlan plan_;
@@ -81,7 +90,7 @@ class Decoder {
 
  private:
   [[nodiscard]] Status read_model_part(std::span<const std::byte> frame, const FrameHeader& header);
-  [[nodiscard]] bool read_grid(std::span<const std::byte> bytes);
+  [[nodiscard]] bool read_grid(std::span<const std::byte> bytes, std::size_t most_cells);
   [[nodiscard]] Status read_layers(std::span<const std::byte> frame, const FrameHeader& header,
                                    int layers);
   [[nodiscard]] bool read_extras(std::span<const std::byte> bytes, std::size_t most,
@@ -91,9 +100,10 @@ class Decoder {
   std::optional<std::uint32_t> model_id_;
   std::optional<BeamUnprojector> unprojector_;
   bool known_model_ = false;  ///< whether the frame at hand refers to `model_`
-  std::int32_t step_ = 0;
   BeamImage image_;
   LayerPlan plan_;
+  std::vector<std::int32_t> range_;  ///< columns aligned by azimuth
+  std::vector<CellState> state_;
   std::vector<std::int32_t> azimuth_, height_;  ///< residuals, columns aligned by azimuth
   LayerCoder layers_;
   std::vector<LatticePoint> lattice_;

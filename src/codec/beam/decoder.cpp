@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 #include <string>
 
 #include "codec/beam/alignment.hpp"
@@ -46,7 +47,8 @@ Status Decoder::decode(std::span<const std::byte> frame, const FrameHeader& head
   if (Status status = read_model_part(frame, header); !status) return status;
   const auto grid = checked_part(frame, header, static_cast<std::uint8_t>(Part::grid));
   if (!grid) return tl::unexpected(grid.error());
-  if (!read_grid(*grid)) return fail(ErrorCode::corrupt, "the frame's grid cannot be right");
+  if (!read_grid(*grid, most_cells(header.counts.points_in)))
+    return fail(ErrorCode::corrupt, "the frame's grid cannot be right");
   if (image_.cols > 0) {
     if (Status status = read_layers(frame, header, layers); !status) return status;
     unprojector_->unproject(image_, cloud);
@@ -76,29 +78,34 @@ Status Decoder::read_model_part(std::span<const std::byte> frame, const FrameHea
   return {};
 }
 
-bool Decoder::read_grid(std::span<const std::byte> bytes) {
+bool Decoder::read_grid(std::span<const std::byte> bytes, std::size_t most) {
   ByteReader in(bytes);
   image_.cols = static_cast<int>(in.get_varint(kMaxTicks));
   if (image_.cols == 0) return in.ok();
   const auto id = in.get<std::uint32_t>();
-  step_ = static_cast<std::int32_t>(in.get_varint(kLargestStep));
+  plan_.effort = static_cast<Effort>(in.get<std::uint8_t>());
   const int base_rows = in.get<std::uint8_t>();
   const int base_cols = in.get<std::uint8_t>();
+  const auto is_stride = [](int v) { return v > 0 && v <= 16 && (v & (v - 1)) == 0; };
+  if (!is_stride(base_rows) || !is_stride(base_cols) || plan_.effort > Effort::best) return false;
+  plan_.quality.resize(static_cast<std::size_t>(std::countr_zero(unsigned(base_cols))) + 1);
+  for (LayerQuality& quality : plan_.quality) {
+    quality.step = static_cast<std::int32_t>(in.get_varint(kLargestStep));
+    quality.tolerance =
+        static_cast<std::int32_t>(std::clamp<std::int64_t>(in.get_signed(), -1, kLargestStep));
+    if (quality.step == 0) return false;
+  }
+  known_model_ = model_id_ == id;
   image_.azimuth_divisor = static_cast<std::int32_t>(in.get_varint(kMaxTicks));
   image_.height_step = static_cast<std::int32_t>(in.get_varint(kLargestStep));
   image_.motion.reset();
   if (in.get<std::uint8_t>() != 0) image_.motion = read_motion(in);
-  const auto is_stride = [](int v) { return v > 0 && v <= 16 && (v & (v - 1)) == 0; };
-  if (!in.ok() || step_ == 0 || !is_stride(base_rows) || !is_stride(base_cols)) return false;
-  known_model_ = model_id_ == id;
+  if (!in.ok()) return false;
   if (!known_model_) return true;
   image_.rows = static_cast<int>(model_.beams.size());
-  if (image_.cells() > kMostPoints || image_.cols > model_.ticks_per_turn) return false;
-  if (PaddedImage::cells(image_.rows, image_.cols, base_rows, base_cols) > 2 * kMostPoints) {
-    return false;
-  }
+  if (image_.cells() > most || image_.cols > model_.ticks_per_turn) return false;
   if (image_.motion && !sweepcast::check(*image_.motion, model_)) return false;
-  set_plan(model_, image_.cols, step_, base_rows, base_cols, plan_);
+  set_plan(model_, image_.cols, base_rows, base_cols, plan_);
   return true;
 }
 
@@ -128,12 +135,12 @@ Status Decoder::read_layers(std::span<const std::byte> frame, const FrameHeader&
     }
   }
 
+  layers_.read(range_, state_);
   image_.range.resize(image_.cells());
   image_.azimuth_residual.resize(azimuth_.size());
   image_.height_residual.resize(height_.size());
-  for_each_aligned(model_, image_, [&](int row, std::size_t cell, std::size_t aligned) {
-    const auto col = static_cast<int>(aligned % static_cast<std::size_t>(image_.cols));
-    image_.range[cell] = layers_.image().at(row, col)->range;
+  for_each_aligned(model_, image_, [&](int /*row*/, std::size_t cell, std::size_t aligned) {
+    image_.range[cell] = state_[aligned] == CellState::measured ? range_[aligned] : 0;
     if (!residuals) return;
     image_.azimuth_residual[cell] = azimuth_[aligned];
     image_.height_residual[cell] = height_[aligned];

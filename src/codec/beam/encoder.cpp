@@ -29,9 +29,11 @@ std::uint64_t as_unsigned(std::int64_t value) {
   return static_cast<std::uint64_t>(value);
 }
 
-// Half the step of ranges, metres.
+// Half the step of ranges, metres: what angles leave, less the rounding of ranges to 0.1 mm and of
+// coordinates to float32.
 double range_error(const BeamOptions& options) {
-  return options.max_error_m * std::sqrt(1.0 - kAngularShare * kAngularShare);
+  constexpr double kRounding = 0.6e-4;
+  return options.max_error_m * std::sqrt(1.0 - kAngularShare * kAngularShare) - kRounding;
 }
 
 std::int32_t range_step(const BeamOptions& options) {
@@ -73,11 +75,11 @@ void Encoder::encode(const CloudView& cloud, PartList& parts, SweepCounts& count
   if (!model_ && sweeps_to_wait_-- == 0) learn_model(cloud);
   project(cloud, counts);
   write_model_part(parts);
+  if (image_.cols > 0) plan_layers();
   write_grid(parts);
   write_extras(parts, counts);
   if (image_.cols == 0) return;
 
-  plan_layers();
   layers_.begin(plan_);
   for (int layer = 0; layer < LayerCoder::layers(plan_); ++layer) {
     parts.begin(static_cast<std::uint8_t>(static_cast<int>(Part::layer) + layer));
@@ -113,8 +115,32 @@ void Encoder::project(const CloudView& cloud, SweepCounts& counts) {
   cloud.x.read(0, x_);
   cloud.y.read(0, y_);
   cloud.z.read(0, z_);
+  choose(counts);
+  if (!model_) return list_as_extras();
+  BeamGridOptions grid;
+  grid.max_error_m = kAngularShare * options_.max_error_m;
+  grid.nearest = kNearest;
+  grid.farthest = kFarthest;
+  const CloudView floats = CloudView::columns(x_, y_, z_);
+  if (motion_) {  // the sensor's sweeps come deskewed: each by a motion of its own
+    motion_ = estimate_motion(floats, *model_, &*motion_);
+    grid.motion = motion_;
+  }
+  if (counts.cropped == 0) {
+    projector_->project(x_, y_, z_, grid, image_);
+  } else {
+    projector_->project(floats, chosen_, grid, image_);
+  }
+  if (image_.cells() > most_cells(cloud.size)) return list_as_extras();
+  // Otherwise the grid's own bound on angular errors and the step of ranges are enough.
+  if (image_.motion || !image_.azimuth_residual.empty()) keep_bound();
+}
+
+// Lists the points that the crop leaves, where it takes any.
+void Encoder::choose(SweepCounts& counts) {
   chosen_.clear();
-  for (std::uint32_t i = 0; i < cloud.size; ++i) {
+  if (!crops(crop_)) return;
+  for (std::uint32_t i = 0; i < x_.size(); ++i) {
     const float range = std::sqrt(x_[i] * x_[i] + y_[i] * y_[i] + z_[i] * z_[i]);
     if (range > 0.0F && is_cropped(crop_, x_[i], y_[i], z_[i], range)) {
       ++counts.cropped;
@@ -122,24 +148,14 @@ void Encoder::project(const CloudView& cloud, SweepCounts& counts) {
       chosen_.push_back(i);
     }
   }
-  if (!model_) {
-    image_ = {};
-    for (const std::uint32_t i : chosen_) image_.extras.push_back({i, ExtraReason::stray});
-    return;
+}
+
+// A sweep without an image.
+void Encoder::list_as_extras() {
+  image_ = {};
+  for (std::uint32_t i = 0; i < (crops(crop_) ? chosen_.size() : x_.size()); ++i) {
+    image_.extras.push_back({crops(crop_) ? chosen_[i] : i, ExtraReason::stray});
   }
-  BeamGridOptions grid;
-  grid.max_error_m = kAngularShare * options_.max_error_m;
-  const CloudView floats = CloudView::columns(x_, y_, z_);
-  if (motion_) {  // the sensor's sweeps come deskewed: each by a motion of its own
-    motion_ = estimate_motion(floats, *model_, &*motion_);
-    grid.motion = motion_;
-  }
-  if (counts.cropped == 0) {
-    projector_->project(floats, grid, image_);
-  } else {
-    projector_->project(floats, chosen_, grid, image_);
-  }
-  keep_bound();
 }
 
 // Moves to the extras what would miss the bound once its range is rounded, and what is too near.
@@ -175,7 +191,10 @@ void Encoder::keep_bound() {
 }
 
 void Encoder::plan_layers() {
-  set_plan(*model_, image_.cols, range_step(options_), kBaseRows, kBaseCols, plan_);
+  set_plan(*model_, image_.cols, kBaseRows, kBaseCols, plan_);
+  plan_.effort = options_.effort;
+  plan_.quality.assign(static_cast<std::size_t>(LayerCoder::layers(plan_)),
+                       {range_step(options_), -1});
   const bool residuals = !image_.azimuth_residual.empty();
   range_.resize(image_.cells());
   azimuth_.resize(residuals ? image_.cells() : 0);
@@ -203,9 +222,13 @@ void Encoder::write_grid(PartList& parts) {
   out.put_varint(as_unsigned(image_.cols));
   if (image_.cols > 0) {
     out.put(model_id_);
-    out.put_varint(as_unsigned(range_step(options_)));
+    out.put(static_cast<std::uint8_t>(plan_.effort));
     out.put(static_cast<std::uint8_t>(kBaseRows));
     out.put(static_cast<std::uint8_t>(kBaseCols));
+    for (const LayerQuality& quality : plan_.quality) {
+      out.put_varint(as_unsigned(quality.step));
+      out.put_signed(quality.tolerance);
+    }
     const bool residuals = !image_.azimuth_residual.empty();
     out.put_varint(residuals ? as_unsigned(image_.azimuth_divisor) : 0U);
     out.put_varint(as_unsigned(image_.height_step));

@@ -7,8 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "codec/beam/neighbourhood.hpp"
-
 namespace sweepcast::beam {
 
 /// Which cells a step adds.
@@ -49,24 +47,19 @@ struct LatticeStep {
   return {step, step + 1};
 }
 
-/// Which rows and columns a step adds, and where their neighbours are.
+/// Which rows and columns a step adds.
 struct Traversal {
-  int first_row, row_stride, first_col, col_stride;
-  Neighbourhood neighbours;
+  int first_row = 0, row_stride = 1;
+  int first_col = 0, col_stride = 1;
 
-  Traversal(const LatticeStep& step, std::uint32_t number, std::ptrdiff_t pitch)
-      : first_row(0),
-        row_stride(step.row_stride),
-        first_col(0),
-        col_stride(step.col_stride),
-        neighbours{step.col_stride, step.row_stride * pitch, 32'768, number} {
+  explicit Traversal(const LatticeStep& step)
+      : row_stride(step.row_stride), col_stride(step.col_stride) {
     if (step.kind == LatticeStep::Kind::columns) {
       first_col = step.col_stride;
       col_stride *= 2;
     } else if (step.kind == LatticeStep::Kind::rows) {
       first_row = step.row_stride;
       row_stride *= 2;
-      std::swap(neighbours.along, neighbours.across);
     }
   }
 };

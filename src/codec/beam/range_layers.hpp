@@ -8,16 +8,24 @@
 #include <vector>
 
 #include "codec/beam/lattice.hpp"
-#include "codec/beam/neighbourhood.hpp"
+#include "codec/beam/plane.hpp"
+#include "sweepcast/encoder.hpp"
 
 namespace sweepcast::beam {
+
+/// How well a layer is coded.
+struct LayerQuality {
+  std::int32_t step = 1;        ///< of ranges, 0.1 mm: they decode within half of it
+  std::int32_t tolerance = -1;  ///< cells that interpolation gets as near may be left out; -1: none
+};
 
 /// What encoder and decoder must agree on.
 struct LayerPlan {
   int rows = 0;
   int cols = 0;
-  std::int32_t step = 0;                ///< of ranges, 0.1 mm
+  Effort effort = Effort::normal;
   std::vector<LatticeStep> lattice;     ///< from the base on
+  std::vector<LayerQuality> quality;    ///< of each layer; the first is never thinned
   std::vector<std::int32_t> elevation;  ///< rows values: tangent of each row's beam, falling
 };
 
@@ -39,7 +47,7 @@ struct LayerResiduals {
 /// and decoded in order; any number of the first ones decodes by itself.
 class LayerCoder {
  public:
-  /// Begins an image: rows and columns as in `plan`, every cell unknown.
+  /// Begins an image: every cell unknown.
   void begin(const LayerPlan& plan);
 
   /// Layers of a plan.
@@ -48,13 +56,13 @@ class LayerCoder {
   /// Appends layer `layer` to `out`.
   void encode(int layer, const LayerValues& values, std::vector<std::byte>& out);
 
-  /// Reads layer `layer`: ranges into `image()`, residuals into `residuals`, where it has room for
+  /// Reads layer `layer`: ranges into the image, residuals into `residuals`, where it has room for
   /// them. False where the bytes end too early to be right.
   [[nodiscard]] bool decode(int layer, std::span<const std::byte> bytes,
                             const LayerResiduals& residuals);
 
-  /// The cells so far.
-  [[nodiscard]] PaddedImage& image() { return image_; }
+  /// The image after the layers so far, rows x cols: ranges, 0 where there is none, and states.
+  void read(std::vector<std::int32_t>& range, std::vector<CellState>& state) const;
 
   LayerCoder();
   LayerCoder(LayerCoder&&) noexcept;
@@ -62,13 +70,8 @@ class LayerCoder {
   ~LayerCoder();
 
  private:
-  template <class Visit>
-  void for_each_point(std::uint32_t number, Visit visit);
-
-  struct Models;
-  LayerPlan plan_;
-  PaddedImage image_;
-  std::unique_ptr<Models> models_;
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace sweepcast::beam

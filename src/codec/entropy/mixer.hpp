@@ -2,6 +2,7 @@
 // combined in the logistic domain by weights that learn which of them to trust.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -35,10 +36,21 @@ class BitMixer {
     std::fill(weights_.begin(), weights_.end(), fresh);
   }
 
+  /// Lets what was learnt be overruled fast, as if no slot had learnt more than `most` bits.
+  void soften(std::uint16_t most) {
+    for (Slot& slot : slots_) slot.count = std::min(slot.count, most);
+  }
+
   /// Codes one bit through `coder` (a RangeEncoder or RangeDecoder) under hashed contexts and a
   /// set of weights; returns the bit.
   template <class Coder>
   bool code(Coder& coder, const Contexts& contexts, std::size_t weight_set, bool bit) {
+    if constexpr (kInputs == 1) {  // nothing to mix
+      Slot& slot = slots_[contexts[0] & mask_];
+      bit = coder.code(bit, std::clamp<std::uint32_t>(slot.p, kLeast, 65'536 - kLeast));
+      slot.learn(bit);
+      return bit;
+    }
     std::array<Slot*, kInputs> slots;
     std::array<std::int32_t, kTerms> terms;
     Weights& weights = weights_[weight_set];
@@ -69,6 +81,7 @@ class BitMixer {
   static constexpr int kRateShift = 13;
   static constexpr int kRateHalf = 1 << (kRateShift - 1);
   static constexpr std::size_t kMostSeen = 255;
+  static constexpr std::uint32_t kLeast = 24;
   using Weights = std::array<std::int32_t, kTerms>;
 
   static constexpr auto kRates = [] {

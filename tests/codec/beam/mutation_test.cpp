@@ -154,9 +154,13 @@ Bytes huge_image(int beams, std::int32_t ticks, int base) {
   ByteWriter grid_out(grid);
   grid_out.put_varint(static_cast<std::uint64_t>(ticks));
   grid_out.put(crc32(model_bytes));
-  grid_out.put_varint(988);
+  grid_out.put(static_cast<std::uint8_t>(Effort::normal));
   grid_out.put(static_cast<std::uint8_t>(base));
   grid_out.put(static_cast<std::uint8_t>(base));
+  for (int stride = base; stride > 0; stride /= 2) {
+    grid_out.put_varint(988);
+    grid_out.put_signed(-1);
+  }
   for (int zeros = 0; zeros < 3; ++zeros) grid_out.put(std::uint8_t{0});
   const Bytes layer(20, std::byte{85});
   return frame_of({{beam::Part::model, model_bytes},

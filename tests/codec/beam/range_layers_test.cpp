@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
 #include <string>
 
@@ -17,6 +18,7 @@ using test::uniform_int;
 struct Image {
   int rows = 0, cols = 0;
   std::vector<std::int32_t> range, azimuth, height;
+  std::vector<CellState> state;  ///< of decoded images
 
   [[nodiscard]] std::size_t cells() const { return range.size(); }
   [[nodiscard]] LayerValues values() const { return {range, azimuth, height}; }
@@ -71,12 +73,14 @@ void add_residuals(std::mt19937& random, Image& image) {
   }
 }
 
-LayerPlan plan_of(const Image& image, std::int32_t step, int base_rows = 4, int base_cols = 16) {
+LayerPlan plan_of(const Image& image, std::int32_t step, int base_rows = 4, int base_cols = 16,
+                  Effort effort = Effort::normal) {
   LayerPlan plan;
+  plan.effort = effort;
   plan.rows = image.rows;
   plan.cols = image.cols;
-  plan.step = step;
   plan.lattice = make_lattice(base_rows, base_cols);
+  plan.quality.assign(static_cast<std::size_t>(LayerCoder::layers(plan)), {step, -1});
   for (int row = 0; row < image.rows; ++row) {
     plan.elevation.push_back(500'000 - 90'000 * row + row % 3 * 20'000);
   }
@@ -105,12 +109,7 @@ Image decode(const LayerPlan& plan, const Layers& layers, std::size_t count, boo
   for (std::size_t i = 0; i < count; ++i) {
     EXPECT_TRUE(coder.decode(static_cast<int>(i), layers[i], {image.azimuth, image.height}));
   }
-  for (int row = 0; row < plan.rows; ++row) {
-    for (int col = 0; col < plan.cols; ++col) {
-      image.range[static_cast<std::size_t>(row * plan.cols + col)] =
-          coder.image().at(row, col)->range;
-    }
-  }
+  coder.read(image.range, image.state);
   return image;
 }
 
@@ -138,12 +137,13 @@ void expect_columns_of(const Image& part, const Image& whole, int stride) {
 }
 
 void expect_all_prefixes(const Image& image, const LayerPlan& plan) {
+  const std::int32_t step = plan.quality.front().step;
   SCOPED_TRACE(std::to_string(image.rows) + " x " + std::to_string(image.cols) + ", step " +
-               std::to_string(plan.step));
+               std::to_string(step));
   const bool residuals = !image.azimuth.empty();
   const Layers layers = encode(plan, image);
   const Image whole = decode(plan, layers, layers.size(), residuals);
-  expect_within_half_a_step(whole, image, plan.step);
+  expect_within_half_a_step(whole, image, step);
   EXPECT_EQ(whole.azimuth, image.azimuth);
   EXPECT_EQ(whole.height, image.height);
   int stride = plan.lattice.front().col_stride;
@@ -151,6 +151,10 @@ void expect_all_prefixes(const Image& image, const LayerPlan& plan) {
   for (std::size_t count = 1; count <= layers.size(); ++count, stride /= 2) {
     expect_columns_of(decode(plan, layers, count, residuals), whole, stride);
   }
+}
+
+Effort any_effort(std::mt19937& random) {
+  return static_cast<Effort>(uniform_int(random, 0, static_cast<int>(Effort::best)));
 }
 
 constexpr std::int32_t kSteps[] = {1, 2, 19, 197, 988, 7911, 39'548, 1 << 20};
@@ -162,10 +166,10 @@ TEST(RangeLayers, AnyImageOfAnySizeAndStep) {
     for (const std::int32_t step : kSteps) {
       Image image = scene(random, rows, cols, uniform_int(random, 0, 30));
       if (random_bits(random) % 2 == 0) add_residuals(random, image);
-      expect_all_prefixes(image, plan_of(image, step));
+      expect_all_prefixes(image, plan_of(image, step, 4, 16, any_effort(random)));
       image = noise(random, rows, cols, uniform_int(random, 0, 100));
       if (random_bits(random) % 2 == 0) add_residuals(random, image);
-      expect_all_prefixes(image, plan_of(image, step));
+      expect_all_prefixes(image, plan_of(image, step, 4, 16, any_effort(random)));
     }
   }
 }
@@ -186,6 +190,49 @@ TEST(RangeLayers, AWholeSweep) {
   expect_all_prefixes(image, plan_of(image, 988));
   add_residuals(random, image);
   expect_all_prefixes(image, plan_of(image, 197));
+}
+
+TEST(RangeLayers, EachLayerHasAStepOfItsOwn) {
+  std::mt19937 random(8);
+  const Image image = scene(random, 20, 200, 10);
+  LayerPlan plan = plan_of(image, 100);
+  for (std::size_t i = 0; i < plan.quality.size(); ++i) {
+    plan.quality[i].step = 100 << i;
+  }
+  const Layers layers = encode(plan, image);
+  const Image decoded = decode(plan, layers, layers.size(), false);
+  for (std::size_t cell = 0; cell < image.cells(); ++cell) {
+    const auto col = static_cast<unsigned>(cell % static_cast<std::size_t>(image.cols));
+    const int layer = 4 - std::min(4, std::countr_zero(col | 16U));
+    ASSERT_LE(2 * std::abs(decoded.range[cell] - image.range[cell]), 100 << layer) << cell;
+  }
+}
+
+TEST(RangeLayers, ThinnedCellsAreFilledWithinTheToleranceOrKept) {
+  std::mt19937 random(9);
+  for (const Effort effort : {Effort::fast, Effort::normal, Effort::best}) {
+    const Image image = scene(random, 32, 500, 3);
+    LayerPlan plan = plan_of(image, 100, 4, 16, effort);
+    const Layers all = encode(plan, image);
+    const std::int32_t tolerance = 400;
+    for (std::size_t i = 3; i < plan.quality.size(); ++i) plan.quality[i].tolerance = tolerance;
+    const Layers layers = encode(plan, image);
+    EXPECT_LT(layers.back().size() * 2, all.back().size());
+    const Image decoded = decode(plan, layers, layers.size(), false);
+    std::size_t filled = 0;
+    for (std::size_t cell = 0; cell < image.cells(); ++cell) {
+      const std::int32_t miss = std::abs(decoded.range[cell] - image.range[cell]);
+      if (decoded.state[cell] == CellState::measured) {
+        ASSERT_LE(2 * miss, 100) << cell;
+      } else if (decoded.state[cell] == CellState::filled) {
+        ++filled;
+        ASSERT_TRUE(image.range[cell] == 0 || miss <= tolerance) << cell;
+      } else {
+        ASSERT_EQ(decoded.range[cell], 0) << cell;
+      }
+    }
+    EXPECT_GT(filled, image.cells() / 4);
+  }
 }
 
 TEST(RangeLayers, EmptyAndFullImages) {
@@ -253,12 +300,11 @@ TEST(RangeLayers, DamagedLayersGiveRangesThatCanBe) {
       ++refused;
       break;
     }
-    for (int row = 0; row < image.rows; ++row) {
-      for (int col = 0; col < image.cols; ++col) {
-        const PaddedImage::Cell& cell = *coder.image().at(row, col);
-        EXPECT_TRUE(cell.range == 0 || cell.state == 2) << row << ", " << col;
-        EXPECT_TRUE(cell.range == 0 || (cell.range >= kNearest && cell.range <= kFarthest));
-      }
+    coder.read(image.range, image.state);
+    for (std::size_t cell = 0; cell < image.cells(); ++cell) {
+      const std::int32_t range = image.range[cell];
+      EXPECT_TRUE(range == 0 || image.state[cell] == CellState::measured) << cell;
+      EXPECT_TRUE(range == 0 || (range >= kNearest && range <= kFarthest)) << cell;
     }
   }
   EXPECT_GT(refused, 50);

@@ -1,0 +1,250 @@
+// Codes the cells that one step of the lattice adds, a run at a time: which hold a point, on which
+// side of a jump in depth they lie, and by how many steps their ranges miss the prediction.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+
+#include "codec/beam/occupancy_coder.hpp"
+#include "codec/beam/prediction.hpp"
+#include "codec/beam/residual_coder.hpp"
+#include "codec/entropy/mixer.hpp"
+#include "codec/entropy/range_coder.hpp"
+
+namespace sweepcast::beam {
+
+/// Cells in a row of a plane, one after the other, with their neighbours.
+struct Run {
+  Neighbours neighbours;
+  RunStates states;
+  std::int32_t* range;     ///< of the first cell
+  std::uint8_t* activity;  ///< of the first cell
+  /// Whether a cell's neighbours may be cells before it in this run.
+  bool sequential = false;
+
+  /// The run that begins `by` cells later.
+  [[nodiscard]] Run from(std::size_t by) const;
+};
+
+/// Whether damaged bytes have ended, so that a few of them cannot keep the decoder busy for long.
+inline bool ran_dry(const RangeDecoder& coder) {
+  return coder.overran();
+}
+inline bool ran_dry(const RangeEncoder& /*coder*/) {
+  return false;
+}
+
+/// Codes runs. So many contexts are mixed for residuals and for states.
+template <std::size_t kResidualInputs, std::size_t kStateInputs>
+class StepCoder {
+ public:
+  /// Begins an image: forgets what was learnt.
+  void reset() {
+    occupancy_.reset();
+    residual_.reset();
+    pick_.reset();
+    skip_.reset();
+  }
+
+  /// Begins a step of the lattice. `step` is that of ranges, 0.1 mm. `tolerance`: groups of cells
+  /// that interpolation gets as near as that may be left out, 0.1 mm; negative: none are.
+  void begin_step(std::int32_t step, std::int32_t tolerance) {
+    scale_ = PredictionScale(step);
+    tolerance_ = tolerance;
+    residual_.soften();
+  }
+
+  /// Codes a run. Encoding: `truth` has the cells' ranges, 0 where there is no point. Decoding:
+  /// null.
+  template <class Coder>
+  void code(Coder& coder, const Run& run, const std::int32_t* truth) {
+    const std::size_t count = run.states.count;
+    predictions_.resize(count);
+    contexts_.resize(count);
+    occupancy_.begin(run.states, truth);
+    skipped_ = 0;
+    if (!run.sequential) {
+      predict(run.neighbours, scale_, count, predictions_);
+      occupancy_.guess_all(run.states);
+    }
+    for (std::size_t first = 0; first < count; first += kGroup) {
+      if (ran_dry(coder)) return;
+      const std::size_t last = std::min(count, first + kGroup);
+      if (tolerance_ >= 0 && skip_group(coder, run, first, last, truth)) continue;
+      if (run.sequential) occupancy_.guess(run.states, first, last);
+      occupancy_.code_group(coder, run.states, first, last);
+    }
+    if (run.sequential) {
+      for (std::size_t i = 0; i < count; ++i) {
+        if (run.states.cell[i] != CellState::measured) continue;
+        if (ran_dry(coder)) return;
+        const Run cell = run.from(i);
+        predict(cell.neighbours, scale_, 1, predictions_);
+        code_ranges(coder, cell, 1, truth == nullptr ? nullptr : truth + i);
+      }
+    } else {
+      code_ranges(coder, run, count, truth);
+    }
+  }
+
+ private:
+  static constexpr std::size_t kPicks = kResidualInputs > 1 ? 4 : 1;
+  using Pick = BitMixer<kPicks>;
+
+  template <class Coder>
+  void code_ranges(Coder& coder, const Run& run, std::size_t count, const std::int32_t* truth) {
+    constexpr auto kGap = static_cast<std::int32_t>(Basis::gap);
+    const CellState* state = run.states.cell;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (state[i] != CellState::measured || predictions_.basis[i] != kGap) continue;
+      if (ran_dry(coder)) return;
+      pick_side(coder, run, i, truth == nullptr ? 0 : truth[i]);
+    }
+    describe(run.neighbours, scale_, predictions_, count, kResidualInputs > 1, contexts_);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (state[i] != CellState::measured) continue;
+      if (ran_dry(coder)) return;
+      const std::int32_t predicted = predictions_.range[i];
+      const std::int32_t wanted = truth == nullptr ? 0 : in_steps(truth[i] - predicted);
+      const std::int32_t steps = residual_.code(coder, contexts_, i, predictions_.basis[i], wanted);
+      const std::int64_t decoded = predicted + std::int64_t{steps} * scale_.step;
+      run.range[i] =
+          static_cast<std::int32_t>(std::clamp<std::int64_t>(decoded, kNearest, kFarthest));
+      run.activity[i] = static_cast<std::uint8_t>(std::min(std::abs(steps), 20));
+    }
+  }
+
+  [[nodiscard]] std::int32_t in_steps(std::int32_t difference) const {
+    const std::int32_t size = (std::abs(difference) + scale_.step / 2) / scale_.step;
+    return difference < 0 ? -size : size;
+  }
+
+  // Whether a group is left out. Its cells are then filled where both sides are about as far away.
+  template <class Coder>
+  bool skip_group(Coder& coder, const Run& run, std::size_t first, std::size_t last,
+                  const std::int32_t* truth) {
+    std::uint32_t gaps = 0;
+    std::uint32_t activity = 0;
+    bool near = true;
+    for (std::size_t i = first; i < last; ++i) {
+      gaps += predictions_.basis[i] == 0 ? 0U : 1U;
+      activity += run.neighbours.activity[Neighbours::a][i];
+      if (truth != nullptr) near = near && is_near(run, i, truth[i]);
+    }
+    const std::uint32_t active = std::min<std::uint32_t>(std::bit_width(activity), 7U);
+    const BitMixer<3>::Contexts contexts{(gaps * 8U + active) * 4U + (skipped_ & 3U),
+                                         (active * 8U + run.states.step) * 16U + (skipped_ & 15U),
+                                         gaps * 8U + run.states.step};
+    const bool skip = skip_.code(coder, contexts, std::min(gaps, 7U), near);
+    skipped_ = skipped_ * 2U + (skip ? 1U : 0U);
+    for (std::size_t i = first; skip && i < last; ++i) {
+      const bool fills = predictions_.basis[i] == static_cast<std::int32_t>(Basis::between);
+      run.states.cell[i] = fills ? CellState::filled : CellState::empty;
+      if (!fills) continue;
+      run.range[i] = std::clamp(predictions_.range[i], kNearest, kFarthest);
+      run.activity[i] = 1;
+    }
+    return skip;
+  }
+
+  // Whether a point is not missed where its cell is left out.
+  [[nodiscard]] bool is_near(const Run& run, std::size_t i, std::int32_t range) const {
+    if (range == 0) return true;
+    const auto within = [&](std::int32_t other) {
+      return other > 0 && std::abs(range - other) <= tolerance_;
+    };
+    if (predictions_.basis[i] == static_cast<std::int32_t>(Basis::between)) {
+      return within(predictions_.range[i]);
+    }
+    return within(run.neighbours.range[Neighbours::a][i]) ||
+           within(run.neighbours.range[Neighbours::b][i]);
+  }
+
+  // A jump in depth between both sides: the encoder says which side the cell belongs to.
+  template <class Coder>
+  void pick_side(Coder& coder, const Run& run, std::size_t i, std::int32_t range) {
+    const auto at = [&](Neighbours::Place place) { return run.neighbours.range[place][i]; };
+    const std::int32_t a = at(Neighbours::a);
+    const std::int32_t b = at(Neighbours::b);
+    const std::int32_t between = predictions_.range[i];
+    const auto apart = [](std::int32_t u, std::int32_t v) { return std::abs(u - v); };
+    const std::uint32_t rising = a < b ? 1U : 0U;
+    const std::uint32_t step = run.states.step;
+    const std::uint32_t across = side_across(run, i);
+    const std::uint32_t below = below_goes_on(run, i);
+    const std::uint32_t goes_on =
+        (at(Neighbours::aa) > 0 && apart(at(Neighbours::aa), a) < scale_.edge ? 1U : 0U) +
+        (at(Neighbours::bb) > 0 && apart(at(Neighbours::bb), b) < scale_.edge ? 2U : 0U);
+    const auto jump = static_cast<std::uint32_t>(
+        std::bit_width(static_cast<std::uint32_t>(apart(a, b) / scale_.edge)));
+    typename Pick::Contexts contexts;
+    contexts[0] = ((across * 8U + below) * 4U + goes_on) * 2U + rising;
+    if constexpr (kPicks > 1) {
+      contexts[1] = (across * 4U + goes_on) * 2U + rising;
+      contexts[2] = jump * 8U + across;
+      contexts[3] = (across * 8U + below) * 8U + step;
+    }
+    const bool is_side = apart(range, between) > std::min(apart(range, a), apart(range, b));
+    if (!pick_.code(coder, contexts, rising, is_side)) return;
+    typename Pick::Contexts second = contexts;
+    for (std::uint32_t& context : second) context += 512U;
+    const bool picked_b = pick_.code(coder, second, 2U + rising, apart(range, b) < apart(range, a));
+    predictions_.range[i] = picked_b ? b : a;
+    predictions_.spread[i] = scale_.edge;
+    predictions_.basis[i] = static_cast<std::int32_t>(Basis::side);
+  }
+
+  // On which side of the jump the cell across lies: 0 and 1 where the jump is there too, 2 where
+  // there is another, 3 where there is none or nothing, 4 to 6 by its range alone.
+  [[nodiscard]] std::uint32_t side_across(const Run& run, std::size_t i) const {
+    const auto at = [&](Neighbours::Place place) { return run.neighbours.range[place][i]; };
+    const std::int32_t n = at(Neighbours::n);
+    if (n == 0) return 3;
+    const bool corners = at(Neighbours::na) > 0 && at(Neighbours::nb) > 0;
+    const std::int32_t a = at(corners ? Neighbours::na : Neighbours::a);
+    const std::int32_t b = at(corners ? Neighbours::nb : Neighbours::b);
+    if (corners && std::abs(a - b) < scale_.edge) return 3;
+    const std::uint32_t base = corners ? 0 : 4;
+    const std::int32_t to_a = std::abs(n - a);
+    const std::int32_t to_b = std::abs(n - b);
+    if (to_a < to_b) return base + (to_a < scale_.edge ? 0U : 2U);
+    return base + (to_b < scale_.edge ? 1U : 2U);
+  }
+
+  // Whether both sides go on below: a bit for each, or 4 and a bit for each that is known.
+  [[nodiscard]] std::uint32_t below_goes_on(const Run& run, std::size_t i) const {
+    const auto at = [&](Neighbours::Place place) { return run.neighbours.range[place][i]; };
+    const std::int32_t sa = at(Neighbours::sa);
+    const std::int32_t sb = at(Neighbours::sb);
+    if (sa == 0 || sb == 0) return 4U + (sa > 0 ? 1U : 0U) + (sb > 0 ? 2U : 0U);
+    return (std::abs(sa - at(Neighbours::a)) < scale_.edge ? 1U : 0U) +
+           (std::abs(sb - at(Neighbours::b)) < scale_.edge ? 2U : 0U);
+  }
+
+  PredictionScale scale_;
+  std::int32_t tolerance_ = -1;
+  std::uint32_t skipped_ = 0;  // the last groups: whether they were left out
+  Predictions predictions_;
+  Contexts contexts_;
+  OccupancyCoder<kStateInputs> occupancy_;
+  ResidualCoder<kResidualInputs> residual_;
+  Pick pick_{10, 4};
+  BitMixer<3> skip_{10, 8};
+};
+
+inline Run Run::from(std::size_t by) const {
+  Run later = *this;
+  for (auto& range_of : later.neighbours.range) range_of += by;
+  for (auto& activity_of : later.neighbours.activity) activity_of += by;
+  later.states.cell += by;
+  later.states.count -= by;
+  later.range += by;
+  later.activity += by;
+  return later;
+}
+
+}  // namespace sweepcast::beam
