@@ -10,4 +10,5 @@ if(SWEEPCAST_APPS)
 
   sweepcast_test(apps/commands tool_fixture)
   sweepcast_test(apps/errors tool_fixture sweepcast_io)
+  sweepcast_test(apps/interruption tool_fixture)
 endif()

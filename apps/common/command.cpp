@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "common/interruption.hpp"
+
 namespace sweepcast::app {
 
 namespace {
@@ -100,6 +102,7 @@ int run(CLI::App& app, const Command& command, int argc, char** argv) {
     std::fwrite(help.data(), 1, help.size(), stderr);
     return 2;
   }
+  remove_unfinished_on_signals();
   return finish(run_command(app, command, argc, argv));
 }
 

@@ -7,9 +7,9 @@
 #include <array>
 #include <charconv>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -18,6 +18,7 @@
 #include "common/distortion_report.hpp"
 #include "common/inputs.hpp"
 #include "common/progress.hpp"
+#include "io/file.hpp"
 #include "lab/peers/draco.hpp"
 #include "lab/peers/sweepcast_codec.hpp"
 #include "lab/plot.hpp"
@@ -189,18 +190,9 @@ std::string csv_text(const std::vector<BenchRow>& rows) {
   return text;
 }
 
-Status check_csv(const fs::path& path) {
-  if (std::ofstream(path, std::ios::app)) return {};
-  return fail(ErrorCode::io,
-              path.string() + ": cannot be written; is the folder there and writable?");
-}
-
 Status write_csv(const std::vector<BenchRow>& rows, const fs::path& path) {
-  std::ofstream file(path, std::ios::binary);
-  file << csv_text(rows);
-  file.close();
-  if (file.good()) return {};
-  return fail(ErrorCode::io, path.string() + ": cannot be written; is the disk full?");
+  const std::string text = csv_text(rows);
+  return write_file(path, std::as_bytes(std::span(text)));
 }
 
 void report_json(const std::vector<BenchRow>& rows, std::size_t sweep_count, int runs) {
@@ -242,7 +234,7 @@ void report_table(const std::vector<BenchRow>& rows, std::size_t sweep_count, in
 /// Whether the files can be written, before the time is spent that measuring takes.
 Status check_outputs(const BenchCommand& options) {
   if (!options.csv.empty()) {
-    if (Status csv = check_csv(options.csv); !csv) return csv;
+    if (Status csv = check_writable(options.csv); !csv) return csv;
   }
   return options.plot.empty() ? Status{} : lab::check_plot(options.plot);
 }

@@ -198,16 +198,12 @@ set yrange [0:101]
 set title "What the model leaves"
 plot $errors using 1:2 with lines linewidth 2 linecolor rgb "#0b62a4" notitle
 unset multiplot
-unset output
 )gnuplot";
 }
 
 Status write_json(const fs::path& path, const Json& json) {
   const std::string text = json.dump(1) + "\n";
-  auto file = NewFile::create(path);
-  if (!file) return tl::unexpected(file.error());
-  if (Status wrote = file->write(std::as_bytes(std::span(text))); !wrote) return wrote;
-  return file->commit(false);
+  return write_file(path, std::as_bytes(std::span(text)));
 }
 
 Status calibrate(const CalibrateOptions& options) {

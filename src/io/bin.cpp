@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 #include <string_view>
 
@@ -34,6 +36,36 @@ std::vector<RecordField> bin_fields() {
           {.name = "intensity", .column = CloudColumn::intensity}};
 }
 
+bool is_text(std::span<const std::byte> bytes) {
+  return std::all_of(bytes.begin(), bytes.end(), [](std::byte byte) {
+    const auto c = static_cast<unsigned char>(byte);
+    return (c >= ' ' && c <= '~') || c == '\t' || c == '\n' || c == '\r';
+  });
+}
+
+/// Whether most coordinates are farther than the Earth's other pole, or smaller than the rounding
+/// of a sine leaves and not zero: bytes of another meaning, seen as float32, have any order of
+/// magnitude. NaN and infinity say nothing, since sensors write them too.
+bool is_implausible(const PointCloud& cloud) {
+  constexpr float kNearest = 1e-18F;
+  constexpr float kFarthest = 2e7F;
+  std::size_t wild = 0;
+  for (const auto* column : {&cloud.x, &cloud.y, &cloud.z}) {
+    for (const float value : *column) {
+      const float size = std::abs(value);
+      if (std::isfinite(size) && size != 0.0F && (size < kNearest || size > kFarthest)) ++wild;
+    }
+  }
+  return wild > 3 * cloud.size() / 2;
+}
+
+Status refuse(const std::string& what) {
+  return fail(ErrorCode::unsupported,
+              what +
+                  ", and a KITTI .bin holds x, y, z, intensity as little-endian float32, in "
+                  "metres; name a file of that kind");
+}
+
 }  // namespace
 
 Status parse_bin(std::span<const std::byte> bytes, PointCloud& cloud) {
@@ -48,8 +80,12 @@ Status parse_bin(std::span<const std::byte> bytes, PointCloud& cloud) {
                                           " bytes, no multiple of 16 (x, y, z, intensity as "
                                           "float32); it was cut short or is no KITTI .bin");
   }
+  if (is_text(bytes)) return refuse("is text");
   NumberReader reader(bytes, NumberCoding::little_endian);
-  return read_records(reader, bin_fields(), bytes.size() / kPointSize, cloud);
+  const std::size_t count = bytes.size() / kPointSize;
+  if (Status read = read_records(reader, bin_fields(), count, cloud); !read) return read;
+  if (is_implausible(cloud)) return refuse("holds numbers that cannot be coordinates");
+  return {};
 }
 
 void serialize_bin(const PointCloud& cloud, std::vector<std::byte>& out) {

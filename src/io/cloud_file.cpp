@@ -105,10 +105,7 @@ Status write_cloud(const std::filesystem::path& path, const PointCloud& cloud, C
   }
   std::vector<std::byte> bytes;
   serialize(cloud, format, encoding, bytes);
-  auto file = NewFile::create(path);
-  if (!file) return tl::unexpected(file.error());
-  if (Status status = file->write(bytes); !status) return status;
-  return file->commit(false);
+  return write_file(path, bytes);
 }
 
 }  // namespace sweepcast

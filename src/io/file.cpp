@@ -66,9 +66,17 @@ tl::unexpected<Error> io_failure(const fs::path& path, std::string_view action, 
 }
 
 Result<FileHandle> open_for_reading(const fs::path& path) {
-  FileHandle handle(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (handle.get() < 0) return io_failure(path, "cannot be opened", errno);
-  return handle;
+  // Without O_NONBLOCK, a pipe would make us wait for its writer before we see what it is.
+  FileHandle handle(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+  struct stat info {};
+  if (handle.get() < 0 || ::fstat(handle.get(), &info) != 0) {
+    return io_failure(path, "cannot be opened", errno);
+  }
+  if (S_ISREG(info.st_mode)) return handle;
+  const char* what = S_ISDIR(info.st_mode) ? "is a folder; name a file"
+                                           : "is a pipe or a device; copy what it gives into a "
+                                             "file, and name that";
+  return fail(ErrorCode::io, path.string() + ": " + what);
 }
 
 Status read_file(const fs::path& path, std::size_t cap, std::vector<std::byte>& bytes) {
@@ -77,7 +85,7 @@ Status read_file(const fs::path& path, std::size_t cap, std::vector<std::byte>& 
   struct stat info {};
   if (::fstat(handle->get(), &info) != 0) return io_failure(path, "cannot be read", errno);
 
-  // A pipe announces no size, and a file may grow: read until the end, one byte beyond the cap.
+  // A file may grow, and those of /proc announce no size: read until the end, or beyond the cap.
   constexpr std::size_t kChunk = std::size_t{1} << 16;
   const std::size_t announced = info.st_size > 0 ? static_cast<std::size_t>(info.st_size) : 0;
   bytes.resize(announced < cap ? announced + 1 : 1);
@@ -124,12 +132,8 @@ int write_all(int descriptor, std::span<const std::byte> bytes) noexcept {
   return 0;
 }
 
-NewFile::NewFile(fs::path path, fs::path temporary, FileHandle handle)
+NewFile::NewFile(fs::path path, Unfinished temporary, FileHandle handle)
     : path_(std::move(path)), temporary_(std::move(temporary)), handle_(std::move(handle)) {}
-
-NewFile::~NewFile() {
-  if (!temporary_.empty()) ::unlink(temporary_.c_str());
-}
 
 Result<NewFile> NewFile::create(const fs::path& path) {
   constexpr int kFlags = O_WRONLY | O_CLOEXEC;
@@ -148,12 +152,14 @@ Result<NewFile> NewFile::create(const fs::path& path) {
 
   constexpr int kAttempts = 100;  // names may be taken by files that a crash left behind
   for (int attempt = 0;; ++attempt) {
-    fs::path temporary = temporary_name(target, attempt);
-    FileHandle handle(::open(temporary.c_str(), kFlags | O_CREAT | O_EXCL, kMode));
-    if (handle.get() >= 0)
+    Unfinished temporary(temporary_name(target, attempt));
+    FileHandle handle(::open(temporary.path().c_str(), kFlags | O_CREAT | O_EXCL, kMode));
+    if (handle.get() >= 0) {
       return NewFile(std::move(target), std::move(temporary), std::move(handle));
-    if (errno == EEXIST && attempt < kAttempts) continue;
+    }
     const int reason = errno;
+    temporary.forget();  // somebody else's, or none
+    if (reason == EEXIST && attempt < kAttempts) continue;
     if (reason != ENOENT) return io_failure(path, "cannot be written", reason);
     return fail(ErrorCode::io,
                 path.string() + ": cannot be written, its folder does not exist; make the folder");
@@ -173,11 +179,20 @@ Status NewFile::commit(bool durable) {
   }
   if (!handle_.close()) return io_failure(path_, "cannot be written", errno);
   if (direct) return {};
-  if (::rename(temporary_.c_str(), path_.c_str()) != 0) {
-    return io_failure(path_, "cannot be written", errno);
-  }
-  temporary_.clear();
-  return {};
+  const int reason = temporary_.rename_to(path_);
+  return reason == 0 ? Status{} : io_failure(path_, "cannot be written", reason);
+}
+
+Status write_file(const fs::path& path, std::span<const std::byte> bytes) {
+  auto file = NewFile::create(path);
+  if (!file) return tl::unexpected(file.error());
+  if (Status status = file->write(bytes); !status) return status;
+  return file->commit(false);
+}
+
+Status check_writable(const fs::path& path) {
+  const auto file = NewFile::create(path);
+  return file ? Status{} : tl::unexpected(file.error());
 }
 
 }  // namespace sweepcast

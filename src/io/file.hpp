@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/unfinished.hpp"
 #include "sweepcast/status.hpp"
 
 namespace sweepcast {
@@ -37,7 +38,8 @@ class FileHandle {
 [[nodiscard]] tl::unexpected<Error> io_failure(const std::filesystem::path& path,
                                                std::string_view action, int error_number);
 
-/// Opens a file for reading. Errors: not_found, io.
+/// Opens a file for reading. Errors: not_found, io (also what is no regular file: a pipe or a
+/// device might never end).
 [[nodiscard]] Result<FileHandle> open_for_reading(const std::filesystem::path& path);
 
 /// Reads a whole file into `bytes`, whose memory is reused. Errors: not_found, io, limit (the file
@@ -61,10 +63,10 @@ class NewFile {
   /// Errors: io.
   [[nodiscard]] static Result<NewFile> create(const std::filesystem::path& path);
 
-  NewFile(NewFile&&) noexcept = default;
-  NewFile& operator=(NewFile&&) noexcept = default;
-  /// Without `commit`, removes the temporary file.
-  ~NewFile();
+  /// Where the bytes are written until `commit`, which without it is removed; or the path itself.
+  [[nodiscard]] const std::filesystem::path& written_path() const noexcept {
+    return temporary_.empty() ? path_ : temporary_.path();
+  }
 
   /// Adds bytes at the end. Errors: io.
   [[nodiscard]] Status write(std::span<const std::byte> bytes);
@@ -73,11 +75,19 @@ class NewFile {
   [[nodiscard]] Status commit(bool durable);
 
  private:
-  NewFile(std::filesystem::path path, std::filesystem::path temporary, FileHandle handle);
+  NewFile(std::filesystem::path path, Unfinished temporary, FileHandle handle);
 
   std::filesystem::path path_;
-  std::filesystem::path temporary_;  ///< empty where the path is written directly, and once done
+  Unfinished temporary_;  ///< empty where the path is written directly, and once done
   FileHandle handle_;
 };
+
+/// Writes a whole file, which is then there whole or not at all. Errors: io.
+[[nodiscard]] Status write_file(const std::filesystem::path& path,
+                                std::span<const std::byte> bytes);
+
+/// Whether `write_file` could begin: to be asked before a long work whose result goes there.
+/// Errors: io.
+[[nodiscard]] Status check_writable(const std::filesystem::path& path);
 
 }  // namespace sweepcast

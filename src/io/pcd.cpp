@@ -180,11 +180,16 @@ Status expand(std::span<const std::byte> bytes, std::uint64_t expected,
   if (!reader.ok()) {
     return fail(ErrorCode::truncated, "the compressed data is cut short; copy the file again");
   }
-  constexpr std::uint64_t kBestRatio = 264;  // LZF's longest match over its shortest code
-  if (size != expected || size > kBestRatio * compressed_size) {
+  if (size != expected) {
     return fail(ErrorCode::corrupt, "the compressed data announces " + std::to_string(size) +
                                         " bytes where the points take " + std::to_string(expected) +
                                         "; copy the file again");
+  }
+  constexpr std::uint64_t kBestRatio = 264;  // LZF's longest match, by far, for two bytes of code
+  if (size > kBestRatio * compressed_size) {
+    return fail(ErrorCode::corrupt, "the compressed data has " + std::to_string(compressed_size) +
+                                        " bytes, too few for the " + std::to_string(size) +
+                                        " that it announces; copy the file again");
   }
   columns.resize(size);
   if (size == 0) return {};

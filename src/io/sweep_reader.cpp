@@ -26,9 +26,6 @@ Result<SweepReader> SweepReader::open(const std::filesystem::path& path) {
   if (!handle) return tl::unexpected(handle.error());
   struct stat info {};
   if (::fstat(handle->get(), &info) != 0) return io_failure(path, "cannot be read", errno);
-  if (!S_ISREG(info.st_mode)) {
-    return fail(ErrorCode::io, path.string() + ": is no regular file; name a .sweep file");
-  }
   auto state = std::make_unique<State>();
   state->path = path;
   state->handle = std::move(*handle);

@@ -103,7 +103,7 @@ std::string rate_distortion_script(std::span<const BenchRow> rows,
   const std::vector<Curve> curves = curves_of(rows);
   std::string script = plot_output(output, 1650, 600) + kStyle;
   for (const Panel& panel : kPanels) script += panel_script(curves, panel);
-  return script + "unset multiplot\nunset output\n";
+  return script + "unset multiplot\n";
 }
 
 Status plot_rate_distortion(std::span<const BenchRow> rows, const std::filesystem::path& output) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -58,6 +59,27 @@ Outcome ToolTest::shell(const std::string& line) const {
                   text(captured / "err")};
   fs::remove_all(captured);
   return outcome;
+}
+
+int ToolTest::interrupt(std::vector<std::string> arguments, int signal,
+                        const std::function<bool()>& begun) const {
+  arguments.insert(arguments.begin(), SWEEPCAST_TOOL);
+  std::vector<char*> words;
+  for (std::string& argument : arguments) words.push_back(argument.data());
+  words.push_back(nullptr);
+  const pid_t child = fork();
+  if (child == 0) {
+    if (chdir(folder_.c_str()) == 0) execv(words.front(), words.data());
+    std::_Exit(127);
+  }
+  int status = 0;
+  pid_t ended = 0;
+  while (ended == 0 && !begun()) ended = waitpid(child, &status, WNOHANG);
+  if (ended == 0) {
+    kill(child, signal);
+    waitpid(child, &status, 0);
+  }
+  return WIFSIGNALED(status) ? WTERMSIG(status) : 0;
 }
 
 std::uintmax_t ToolTest::size(const std::string& name) const {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -37,6 +38,11 @@ class ToolTest : public ::testing::Test {
   Outcome shell(const std::string& line) const;
   /// Runs the tool with these arguments, which the shell splits.
   Outcome run(const std::string& arguments) const { return shell("\"$SWEEPCAST\" " + arguments); }
+
+  /// Runs the tool, sends it a signal as soon as `begun` says so, and returns the signal that ended
+  /// it; 0 where it exited by itself.
+  int interrupt(std::vector<std::string> arguments, int signal,
+                const std::function<bool()>& begun) const;
 
   [[nodiscard]] std::filesystem::path path(const std::string& name) const { return folder_ / name; }
   [[nodiscard]] std::uintmax_t size(const std::string& name) const;

@@ -194,6 +194,15 @@ TEST(CloudFile, RefusesAFileOfAnotherKind) {
   }
 }
 
+TEST(CloudFile, RefusesWhatMightNeverEnd) {
+  TemporaryFolder folder;
+  PointCloud cloud;
+  ASSERT_EQ(::mkfifo((folder / "pipe.bin").c_str(), 0600), 0);  // nobody writes into it
+  expect_error(read_cloud(folder / "pipe.bin", cloud), ErrorCode::io, "is a pipe or a device");
+  fs::create_symlink("/dev/zero", folder / "zero.bin");
+  expect_error(read_cloud(folder / "zero.bin", cloud), ErrorCode::io, "is a pipe or a device");
+}
+
 TEST(CloudFile, RefusesAFileThatIsTooLarge) {
   TemporaryFolder folder;
   test::write_text(folder / "huge.pcd", "");

@@ -118,7 +118,7 @@ TEST(Pcd, ReadsKnownCompressedBytes) {
                                  "\0\0\0\x0C"
                                  "\0",
                                  9)),
-               ErrorCode::corrupt, "announces 201326592 bytes");
+               ErrorCode::corrupt, "has 1 bytes, too few for the 201326592");
 }
 
 TEST(Pcd, ReadsOddHeaders) {

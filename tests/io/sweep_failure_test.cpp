@@ -51,7 +51,8 @@ TEST(SweepFailure, RefusesOtherFilesAndVersions) {
   test::write_text(path, "");
   expect_error(status_of(SweepReader::open(path)), ErrorCode::corrupt, "is empty");
   expect_error(status_of(SweepReader::open(folder / "none.sweep")), ErrorCode::not_found, "none");
-  expect_error(status_of(SweepReader::open(folder.path())), ErrorCode::io, "regular file");
+  expect_error(status_of(SweepReader::open(folder.path())), ErrorCode::io,
+               "is a folder; name a file");
 }
 
 TEST(SweepFailure, RefusesWhatIsNoFrame) {

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "common/distortion_report.hpp"
+#include "io/support.hpp"
 #include "lab/peers/sweepcast_codec.hpp"
 #include "lab/plot.hpp"
 
@@ -175,10 +176,30 @@ TEST(Plot, HasACurveForEachCodecOrderedByRatio) {
 
 TEST(Plot, LeavesOutWhatHasNoNumberAndQuotesNames) {
   const double infinity = std::numeric_limits<double>::infinity();
-  const std::vector<BenchRow> rows{row_of("a", "lossless", 2, infinity), row_of("a", "x", 3, 50)};
-  const std::string script = rate_distortion_script(rows, "my \"plot\".png");
+  const std::vector<BenchRow> rows{row_of("a \"b\"", "lossless", 2, infinity),
+                                   row_of("a \"b\"", "x", 3, 50)};
+  const std::string script = rate_distortion_script(rows, "plot.png");
   EXPECT_NE(script.find("$data0 << END\n3 50 \"x\"\nEND\n"), std::string::npos);
-  EXPECT_NE(script.find(R"(set output "my \"plot\".png")"), std::string::npos);
+  EXPECT_NE(script.find(R"(title "a \"b\"")"), std::string::npos);
+}
+
+TEST(Plot, IsThereWholeOrNotAtAll) {
+  const test::TemporaryFolder folder;
+  const auto path = folder / "it's \"$(plot)\".svg";
+  const Status possible = check_plot(path);
+  if (!possible) GTEST_SKIP() << possible.error().message;
+  EXPECT_TRUE(folder.names().empty());
+  EXPECT_FALSE(draw_plot("this is no script", path));
+  EXPECT_TRUE(folder.names().empty());
+  ASSERT_TRUE(plot_rate_distortion(std::vector{row_of("a", "x", 3, 50)}, path));
+  EXPECT_EQ(folder.names().size(), 1U);
+  std::string text;
+  for (const std::byte byte : test::read_bytes(path)) text += static_cast<char>(byte);
+  EXPECT_NE(text.find("<svg"), std::string::npos);
+  EXPECT_NE(text.find("</svg>"), std::string::npos);
+  const auto missing = check_plot(folder / "no/plot.svg");
+  ASSERT_FALSE(missing);
+  EXPECT_NE(missing.error().message.find("make the folder"), std::string::npos);
 }
 
 TEST(Plot, RefusesOtherFormatsAndNoRows) {

@@ -150,10 +150,7 @@ std::string mesh_ply(const Mesh& mesh) {
 }
 
 Status write_text(const fs::path& path, const std::string& text) {
-  auto file = NewFile::create(path);
-  if (!file) return tl::unexpected(std::move(file.error()));
-  if (Status status = file->write(std::as_bytes(std::span(text))); !status) return status;
-  return file->commit(false);
+  return write_file(path, std::as_bytes(std::span(text)));
 }
 
 std::string number_name(int index) {
@@ -250,6 +247,7 @@ Result<ExportSummary> write_files(const Drive& drive, const fs::path& folder,
 
 // Replaces the drive's parts in `folder`, and nothing else that lies there.
 Status move_parts(const fs::path& from, const fs::path& folder) {
+  const auto whole = hold_unfinished();  // the old drive or the new one, not parts of both
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) return io_failure(folder, "cannot be made", error.value());
@@ -281,15 +279,15 @@ Result<ExportSummary> write_drive(const Drive& drive, const fs::path& folder,
   }
   fs::create_directories(target.parent_path(), error);
   if (error) return io_failure(target.parent_path(), "cannot be made", error.value());
-  const fs::path partial = target.parent_path() / ("." + target.filename().string() + ".sweepcast");
-  fs::remove_all(partial, error);  // of a run that was killed
-  auto summary = write_files(drive, partial, options, progress);
+  const Unfinished partial(target.parent_path() /
+                           ("." + target.filename().string() + ".sweepcast"));
+  fs::remove_all(partial.path(), error);  // of a run that was killed
+  auto summary = write_files(drive, partial.path(), options, progress);
   if (summary) {
-    if (Status status = move_parts(partial, target); !status) {
+    if (Status status = move_parts(partial.path(), target); !status) {
       summary = tl::unexpected(std::move(status.error()));
     }
   }
-  fs::remove_all(partial, error);
   return summary;
 }
 
