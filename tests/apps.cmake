@@ -5,7 +5,7 @@ if(SWEEPCAST_APPS)
   target_include_directories(tool_fixture PUBLIC ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(tool_fixture PRIVATE SWEEPCAST_TOOL="$<TARGET_FILE:sweepcast_tool>")
   target_compile_definitions(tool_fixture PUBLIC SWEEPCAST_VERSION="${PROJECT_VERSION}")
-  add_dependencies(tool_fixture sweepcast_tool)
+  add_dependencies(tool_fixture sweepcast_tool sweepcast_lab_tool)
   sweepcast_target(tool_fixture)
 
   sweepcast_test(apps/commands tool_fixture)

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -73,14 +74,66 @@ int refuse(const CLI::App& app, const CLI::ParseError& error) {
   return 2;
 }
 
+/// The option of this name, if its value is a list, each item of which is checked; otherwise null.
+CLI::Option* find_list(CLI::App& app, const std::string& word) {
+  CLI::Option* option = word.rfind("--", 0) == 0 ? app.get_option_no_throw(word) : nullptr;
+  const bool is_list =
+      option != nullptr && option->get_delimiter() == ',' && !option->get_allow_extra_args();
+  return is_list ? option : nullptr;
+}
+
+bool belongs_to(CLI::Option& list, const std::string& word) {
+  const auto items = CLI::detail::split(word, ',');
+  return std::all_of(items.begin(), items.end(), [&](const std::string& item) {
+    return (*list.get_validator())(item).empty();
+  });
+}
+
+/// Joins lists that were given in words, as in `--codec rcpcc beam`, with commas. What cannot be an
+/// item is something else, as a rule an INPUT: CLI11 would take it too.
+std::vector<std::string> join_lists(CLI::App& app, const std::vector<std::string>& words) {
+  std::vector<std::string> joined;
+  CLI::Option* list = nullptr;
+  bool has_value = false;
+  for (const std::string& word : words) {
+    if (list != nullptr && has_value && belongs_to(*list, word)) {
+      joined.back() += "," + word;
+      continue;
+    }
+    if (list != nullptr && !has_value) {
+      has_value = true;
+    } else {
+      list = find_list(app, word);
+      has_value = false;
+    }
+    joined.push_back(word);
+  }
+  return joined;
+}
+
+/// No option or input of ours has a meaning when it is empty: a script's variable is unset.
+void require_no_empty_word(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& word : option->results()) {
+      if (!word.empty()) continue;
+      throw CLI::ValidationError(option->get_name(), "is empty; give it a value, or leave it out");
+    }
+  }
+}
+
 int run_command(CLI::App& app, const Command& command, int argc, char** argv) {
   try {
     const std::string first = argv[1];
-    if (first.rfind('-', 0) != 0 && find_subcommand(app, first) == nullptr) {
+    CLI::App* sub = find_subcommand(app, first);
+    if (first.rfind('-', 0) != 0 && sub == nullptr) {
       throw CLI::ExtrasError(fmt::format("no command is named \"{}\"", first),
                              CLI::ExitCodes::ExtrasError);
     }
-    app.parse(argc, argv);
+    std::vector<std::string> words(argv + 1, argv + argc);
+    if (sub != nullptr) words = join_lists(*sub, words);
+    std::reverse(words.begin(), words.end());  // as CLI11 wants them
+    app.parse(words);
+    if (sub != nullptr) require_no_empty_word(*sub);
     const Status status = command ? command() : Status{};
     if (status) return 0;
     print_error(status.error().message);

@@ -39,7 +39,15 @@ Result<Paths> clouds_in(const fs::path& folder, bool is_drive) {
   return clouds;
 }
 
+/// Two formats of the same sweep, which are neighbours by name, have a message of their own.
 Status check_one_format(const fs::path& folder, const Paths& clouds) {
+  for (std::size_t i = 1; i < clouds.size(); ++i) {
+    if (clouds[i].stem() != clouds[i - 1].stem()) continue;
+    return invalid(folder, "holds " + clouds[i - 1].filename().string() + " and " +
+                               clouds[i].filename().string() +
+                               ", which stand for the same sweep; remove one kind, or part them "
+                               "into folders");
+  }
   for (const fs::path& cloud : clouds) {
     const auto first = name(*cloud_format_of(clouds.front()));
     const auto other = name(*cloud_format_of(cloud));

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/codec_options.hpp"
 #include "common/distortion_report.hpp"
 #include "common/inputs.hpp"
 #include "common/progress.hpp"
@@ -99,14 +100,20 @@ void report_text(const lab::Ablation& tables, const AblateCommand& options,
       sweep_count, options.steps[0], options.steps[1], options.quantiser);
 }
 
+/// What all rows of the tables share.
+RcpccOptions base_of(const AblateCommand& options) {
+  RcpccOptions base = options.rcpcc;
+  base.params.azimuth_step_deg = options.steps[0];
+  base.params.elevation_step_deg = options.steps[1];
+  base.params.threshold_m = options.threshold_m;
+  base.rounding = options.quantiser == "truncate" ? Rounding::truncate : Rounding::nearest;
+  return base;
+}
+
 Status ablate(const AblateCommand& options) {
   const auto sweeps = collect_clouds(options.inputs);
   if (!sweeps) return tl::unexpected(sweeps.error());
-  lab::AblationOptions ablation{options.rcpcc};
-  ablation.base.params.azimuth_step_deg = options.steps[0];
-  ablation.base.params.elevation_step_deg = options.steps[1];
-  ablation.base.params.threshold_m = options.threshold_m;
-  ablation.base.rounding = options.quantiser == "truncate" ? Rounding::truncate : Rounding::nearest;
+  lab::AblationOptions ablation{base_of(options)};
   Progress progress("measuring", sweeps->size());
   ablation.on_sweep = [&progress](std::string_view name) { progress.step(name); };
   const auto tables = lab::ablate(*sweeps, ablation);
@@ -143,7 +150,13 @@ void add_ablate(CLI::App& app, Command& command) {
       ->check(CLI::IsMember({4, 8, 16, 32}));
   sub->add_flag("--json", options->json, "Print the tables as JSON");
   sub->footer("Example: sweepcast ablate drive --quantiser truncate");
-  sub->callback([options, &command] { command = [options] { return ablate(*options); }; });
+  sub->callback([options, &command] {
+    EncoderOptions encoder;
+    encoder.codec = CodecId::rcpcc;
+    encoder.rcpcc = base_of(*options);
+    require_valid(encoder);
+    command = [options] { return ablate(*options); };
+  });
 }
 
 }  // namespace sweepcast::app

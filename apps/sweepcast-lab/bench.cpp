@@ -18,6 +18,7 @@
 #include "common/distortion_report.hpp"
 #include "common/inputs.hpp"
 #include "common/progress.hpp"
+#include "common/validators.hpp"
 #include "io/file.hpp"
 #include "lab/peers/draco.hpp"
 #include "lab/peers/sweepcast_codec.hpp"
@@ -287,6 +288,7 @@ void add_bench(CLI::App& app, Command& command) {
                   "Settings of beam: largest errors in metres [0.01,0.02,0.05,0.1,0.2,0.4]")
       ->delimiter(',')
       ->allow_extra_args(false)
+      ->check(number_between(0.001, 2.0))
       ->type_name("METRES");
   sub->add_option("--zstd", options->rcpcc.zstd_level,
                   fmt::format("Level of zstd for all settings [{}]", RcpccOptions{}.zstd_level))
@@ -303,7 +305,13 @@ void add_bench(CLI::App& app, Command& command) {
       ->type_name("FILE.png|FILE.svg");
   sub->add_flag("--json", options->json, "Print the rows as JSON");
   sub->footer("Example: sweepcast bench drive --peers draco --plot bench.png");
-  sub->callback([options, &command] { command = [options] { return bench(*options); }; });
+  sub->callback([options, &command] {
+    if (const auto peers = make_peers(*options);
+        !peers && peers.error().code == ErrorCode::invalid_argument) {
+      throw CLI::ValidationError(peers.error().message);
+    }
+    command = [options] { return bench(*options); };
+  });
 }
 
 }  // namespace sweepcast::app

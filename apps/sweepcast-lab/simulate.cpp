@@ -10,6 +10,7 @@
 #include <string>
 
 #include "common/progress.hpp"
+#include "common/validators.hpp"
 #include "lab/simulate/export.hpp"
 #include "sweepcast-lab/commands.hpp"
 
@@ -76,13 +77,15 @@ void add_simulate(CLI::App& app, Command& command) {
   sub->add_option("--sweeps", drive.sweeps, "How many, 10 a second and a metre apart")
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
-  sub->add_option("--seed", drive.seed, "Decides town, traffic and noise")->capture_default_str();
+  sub->add_option("--seed", drive.seed, "Decides town, traffic and noise")
+      ->check(whole_number())
+      ->capture_default_str();
   sub->add_option("--blocks", drive.blocks, "Drive round 1 block (about 290 m) or 3 (about 600 m)")
       ->check(CLI::IsMember({1, 3}))
       ->capture_default_str();
   sub->add_flag("--static", options->still, "Leave out what moves");
   sub->add_option("--noise", drive.noise, "Factor on the sensor's range noise; 0: exact ranges")
-      ->check(CLI::Range(0.0, 100.0))
+      ->check(number_between(0.0, 100.0))
       ->capture_default_str();
   sub->add_flag("--kitti", options->out.kitti, "Write .bin (x, y, z, intensity), not .pcd");
   sub->add_flag("--force", options->out.force, "Replace the drive in DIR");

@@ -16,6 +16,7 @@
 #include "common/inputs.hpp"
 #include "common/progress.hpp"
 #include "common/recording.hpp"
+#include "common/validators.hpp"
 #include "sweepcast/cloud_file.hpp"
 #include "sweepcast/commands.hpp"
 #include "sweepcast/sweep_file.hpp"
@@ -174,12 +175,7 @@ void add_encode(CLI::App& app, Command& command) {
       })
       ->type_name("NAME");
   sub->add_option("--rate", options->rate_hz, "Sweeps per second, for the time stamps [10]")
-      ->check([](const std::string& text) {
-        double rate = 0.0;
-        const bool is_number = CLI::detail::lexical_cast(text, rate);
-        return is_number && rate >= 1e-3 && rate <= 1e6 ? std::string()
-                                                        : text + " is not between 0.001 and 1e6";
-      })
+      ->check(number_between(1e-3, 1e6))
       ->type_name("HZ");
   sub->add_flag("--append", options->append, "Add to the file, in place, as a recorder does");
   sub->add_flag("--json", options->json, "Print the outcome as JSON");

@@ -78,6 +78,65 @@ TEST_F(ToolTest, WrongCommandLinesAreRefused) {
   EXPECT_EQ(list("."), std::vector<std::string>{"a.bin"});
 }
 
+TEST_F(ToolTest, WrongCommandLinesOfTheLabAreRefused) {
+  for (const std::string options :
+       {"simulate -o drive --noise nan", "simulate -o drive --noise -1",
+        "simulate -o drive --seed -1", "simulate -o drive --seed 18446744073709551616",
+        "simulate -o drive --seed 1.5", "bench in --max-error nan", "bench in --max-error 0.05,0",
+        "bench in --params nan,1,1,1", "bench in --codec mp3", "bench in --levels 0 --codec",
+        "ablate in --threshold nan", "ablate in --params 0.5", "ablate in --params 0,1"}) {
+    const std::string command = options.substr(0, options.find(' '));
+    expect_failure(run(options), 2, {"see `sweepcast " + command + " --help`"});
+  }
+  EXPECT_TRUE(list(".").empty());
+}
+
+TEST_F(ToolTest, EmptyWordsAreRefused) {
+  write_bin("a.bin", make_room(0.0F));
+  for (const std::string options :
+       {"encode '' -o x.sweep", "encode a.bin '' -o x.sweep", "encode a.bin -o ''",
+        "encode a.bin -o x.sweep --sensor ''", "decode '' -o back", "decode x.sweep -o ''",
+        "info ''", "verify x.sweep --original ''", "compare '' a.bin", "calibrate a.bin -o ''",
+        "simulate -o ''", "bench a.bin --csv ''", "ablate ''"}) {
+    expect_failure(run(options), 2, {"is empty"});
+  }
+  EXPECT_EQ(list("."), std::vector<std::string>{"a.bin"});
+}
+
+TEST_F(ToolTest, ListsTakeCommasOrWordsButNoInputs) {
+  write_bin("in/a.bin", make_room(0.0F));
+  const auto settings = [&](const std::string& options) {
+    const Outcome outcome = run("bench --json --runs 1 " + options);
+    EXPECT_EQ(outcome.exit_status, 0) << outcome.err;
+    const auto report = outcome.json();
+    std::string text;
+    for (const auto& row : report.at("rows")) text += row["setting"].get<std::string>() + ";";
+    return text;
+  };
+  for (const std::string options :
+       {"in --levels 0,5 --codec rcpcc,beam --max-error 0.1,0.2",
+        "--codec rcpcc beam --levels 0 5 --max-error 0.1 0.2 in",
+        "--levels 0 5 in --codec rcpcc --codec beam --max-error 0.1 0.2"}) {
+    EXPECT_EQ(settings(options), "L0;L5;E 0.1 m;E 0.2 m;") << options;
+  }
+  EXPECT_EQ(settings("--levels 5 ./in"), "L5;");
+}
+
+TEST_F(ToolTest, FailedBenchLeavesNoFile) {
+  write_bin("in/a.bin", make_room(0.0F));
+  write("in/b.bin", "seventeen bytes..");
+  expect_failure(run("bench in --levels 5 --runs 1 --csv rows.csv"), 1, {"in/b.bin"});
+  EXPECT_EQ(list("."), std::vector<std::string>{"in"});
+}
+
+TEST_F(ToolTest, FilesOfTheSameSweepAreNamed) {
+  make_recording(2);
+  ASSERT_EQ(run("decode room.sweep -o back").exit_status, 0);
+  ASSERT_EQ(run("decode room.sweep -o back --format pcd").exit_status, 0);
+  expect_failure(run("compare sweeps back"), 1,
+                 {"back: holds 000000.bin and 000000.pcd", "the same sweep; remove one kind"});
+}
+
 TEST_F(ToolTest, InputsThatAreNotThereOrNotClouds) {
   std::filesystem::create_directory(path("empty"));
   write("nothing.bin", "");

@@ -70,14 +70,16 @@ TEST(Inputs, MeshAloneIsACloud) {
 
 TEST(Inputs, NamesWhatIsWrong) {
   TemporaryFolder folder;
-  for (const char* name : {"mixed/a.bin", "mixed/b.pcd", "a/1.bin", "b/1.pcd", "none/poses.txt",
-                           "drive/sweeps/readme.txt", "out.sweep"}) {
+  for (const char* name :
+       {"mixed/a.bin", "mixed/b.pcd", "a/1.bin", "b/1.pcd", "none/poses.txt", "twice/a.bin",
+        "twice/b.bin", "twice/b.ply", "twice/b2.bin", "drive/sweeps/readme.txt", "out.sweep"}) {
     write_text(folder / name, "x");
   }
   const auto invalid = ErrorCode::invalid_argument;
   expect_error(failure(folder, {"gone"}), ErrorCode::not_found, "gone: does not exist");
   expect_error(failure(folder, {"mixed"}), invalid, "both .bin and .pcd");
   EXPECT_EQ(collected(folder, {"mixed/a.bin", "mixed/b.pcd"}).size(), 2U);
+  expect_error(failure(folder, {"twice"}), invalid, "b.bin and b.ply, which stand for the same");
   expect_error(failure(folder, {"none"}), invalid, "holds no cloud");
   expect_error(failure(folder, {"drive"}), invalid, "sweeps: holds no cloud");
   expect_error(failure(folder, {"out.sweep"}), invalid, "out.sweep: is not named as a cloud");
