@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "codec/damage.hpp"
 #include "codec/entropy/zstd_coder.hpp"
 #include "codec/frame_layout.hpp"
 #include "codec/scene.hpp"
@@ -13,8 +14,8 @@ namespace sweepcast {
 namespace {
 
 using test::Bytes;
+using test::mutate;
 using test::random_bits;
-using test::uniform_int;
 
 std::vector<Bytes> sound_frames() {
   std::vector<Bytes> frames;
@@ -24,40 +25,6 @@ std::vector<Bytes> sound_frames() {
         test::encode(options, fine ? PointCloud{} : test::street(8, 240), {1, 2, "s"}));
   }
   return frames;
-}
-
-std::ptrdiff_t place_in(std::mt19937& random, const Bytes& bytes) {
-  return uniform_int(random, 0, static_cast<int>(bytes.size()));
-}
-
-/// One to four flips, insertions, deletions or splices with another frame.
-void mutate(std::mt19937& random, const std::vector<Bytes>& frames, Bytes& bytes) {
-  for (int n = uniform_int(random, 1, 4); n > 0 && !bytes.empty(); --n) {
-    const auto at = bytes.begin() + place_in(random, bytes);
-    const auto rest = static_cast<int>(bytes.end() - at);
-    switch (random_bits(random) % 5) {
-      case 0:
-        if (rest > 0) *at ^= static_cast<std::byte>(1U << (random_bits(random) % 8));
-        break;
-      case 1:
-        if (rest > 0) *at = static_cast<std::byte>(random_bits(random));
-        break;
-      case 2:
-        bytes.insert(at, static_cast<std::size_t>(uniform_int(random, 1, 9)),
-                     static_cast<std::byte>(random_bits(random)));
-        break;
-      case 3:
-        bytes.erase(at, at + std::min(rest, uniform_int(random, 0, 30)));
-        break;
-      default: {
-        const Bytes& other = frames[random_bits(random) % frames.size()];
-        const auto from =
-            std::min(place_in(random, other), static_cast<std::ptrdiff_t>(other.size()));
-        bytes.erase(at, bytes.end());
-        bytes.insert(bytes.end(), other.begin() + from, other.end());
-      }
-    }
-  }
 }
 
 /// Decodes; gives whether it succeeded.

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/points.hpp"
 #include "core/random.hpp"
 #include "sweepcast/decoder.hpp"
 #include "sweepcast/encoder.hpp"
@@ -17,12 +18,6 @@
 namespace sweepcast::test {
 
 using Bytes = std::vector<std::byte>;
-
-inline void add_point(PointCloud& cloud, double x, double y, double z) {
-  cloud.x.push_back(static_cast<float>(x));
-  cloud.y.push_back(static_cast<float>(y));
-  cloud.z.push_back(static_cast<float>(z));
-}
 
 /// A spinning sensor 1.7 m above a street between walls, with pillars, 2 cm of noise and gaps.
 inline PointCloud street(int beams, int columns, std::uint32_t seed = 1) {
@@ -98,10 +93,6 @@ inline PointCloud decode(const Bytes& frame) {
   const Status status = decoder.decode(frame, cloud);
   EXPECT_TRUE(status.has_value()) << status.error().message;
   return cloud;
-}
-
-inline std::uint32_t sum_without_input(const SweepCounts& c) {
-  return c.points_coded + c.not_finite + c.zero_range + c.cropped + c.out_of_view + c.collided;
 }
 
 }  // namespace sweepcast::test

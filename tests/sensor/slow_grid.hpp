@@ -8,23 +8,19 @@
 #include <utility>
 #include <vector>
 
+#include "core/points.hpp"
 #include "sweepcast/cloud.hpp"
 #include "sweepcast/encoder.hpp"
 
 namespace sweepcast::test {
 
 inline constexpr double kDeg = 180.0 / std::numbers::pi;
-inline void add(PointCloud& cloud, double x, double y, double z) {
-  cloud.x.push_back(static_cast<float>(x));
-  cloud.y.push_back(static_cast<float>(y));
-  cloud.z.push_back(static_cast<float>(z));
-}
 
 inline void add_polar(PointCloud& cloud, double azimuth_deg, double elevation_deg, double range) {
   const double a = azimuth_deg / kDeg;
   const double e = elevation_deg / kDeg;
-  add(cloud, range * std::cos(e) * std::cos(a), range * std::cos(e) * std::sin(a),
-      range * std::sin(e));
+  add_point(cloud, range * std::cos(e) * std::cos(a), range * std::cos(e) * std::sin(a),
+            range * std::sin(e));
 }
 
 struct Polar {
@@ -48,14 +44,14 @@ struct SlowGrid {
   SweepCounts counts;
 
   SlowGrid(const PointCloud& cloud, const RcpccOptions& o, const Crop& crop) {
-    for (std::size_t i = 0; i < cloud.size(); ++i) add_point(cloud, i, o, crop);
+    for (std::size_t i = 0; i < cloud.size(); ++i) count(cloud, i, o, crop);
     for (const auto& cell : cells) {
       ++counts.points_coded;
       counts.collided += static_cast<std::uint32_t>(cell.second.size() - 1);
     }
   }
 
-  void add_point(const PointCloud& cloud, std::size_t i, const RcpccOptions& o, const Crop& crop) {
+  void count(const PointCloud& cloud, std::size_t i, const RcpccOptions& o, const Crop& crop) {
     ++counts.points_in;
     if (!std::isfinite(cloud.x[i]) || !std::isfinite(cloud.y[i]) || !std::isfinite(cloud.z[i])) {
       ++counts.not_finite;

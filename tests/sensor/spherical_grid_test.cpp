@@ -13,11 +13,12 @@
 namespace sweepcast {
 namespace {
 
-using test::add;
+using test::add_point;
 using test::add_polar;
 using test::Polar;
 using test::polar_of;
 using test::SlowGrid;
+using test::sum_without_input;
 using test::uniform;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -32,10 +33,6 @@ Projected project(const PointCloud& cloud, const RcpccOptions& options, const Cr
   Projected p;
   SphericalProjector(options, crop).project(cloud, p.image, p.counts);
   return p;
-}
-
-std::uint32_t sum_of_losses(const SweepCounts& c) {
-  return c.points_coded + c.not_finite + c.zero_range + c.cropped + c.out_of_view + c.collided;
 }
 
 std::size_t occupied(const RangeImage& image) {
@@ -59,9 +56,9 @@ PointCloud clear_cut_cloud(std::mt19937& random, const RcpccOptions& o, std::siz
         std::abs(p.range - o.max_range_m) < 1e-3) {
       continue;
     }
-    add(cloud, double{one.x[0]}, double{one.y[0]}, double{one.z[0]});
+    add_point(cloud, double{one.x[0]}, double{one.y[0]}, double{one.z[0]});
     // Crowds, so that cells have several points.
-    if (random() % 2 == 0) add(cloud, one.x[0] * 1.5, one.y[0] * 1.5, one.z[0] * 1.5);
+    if (random() % 2 == 0) add_point(cloud, one.x[0] * 1.5, one.y[0] * 1.5, one.z[0] * 1.5);
   }
   return cloud;
 }
@@ -70,7 +67,7 @@ void expect_agrees(const PointCloud& cloud, const RcpccOptions& o, const Crop& c
   const SlowGrid slow(cloud, o, crop);
   const Projected fast = project(cloud, o, crop);
   EXPECT_EQ(fast.counts, slow.counts);
-  EXPECT_EQ(sum_of_losses(fast.counts), fast.counts.points_in);
+  EXPECT_EQ(sum_without_input(fast.counts), fast.counts.points_in);
   EXPECT_EQ(occupied(fast.image), slow.cells.size());
   ASSERT_FALSE(slow.cells.empty());
   const SphericalGrid& grid = fast.image.grid;
@@ -134,8 +131,8 @@ TEST(SphericalGrid, CropsByRangeBoxAndRobot) {
 
 TEST(SphericalGrid, BothCornersBelongToABox) {
   PointCloud cloud;
-  add(cloud, 1, 2, 3);
-  add(cloud, -1, -2, -3);
+  add_point(cloud, 1, 2, 3);
+  add_point(cloud, -1, -2, -3);
   Crop crop;
   crop.keep = Box{-1, -2, -3, 1, 2, 3};
   EXPECT_EQ(project(cloud, {}, crop).counts.points_coded, 2U);
@@ -170,14 +167,14 @@ TEST(SphericalGrid, CountsEveryPointOnce) {
       }
     };
     for (int i = 0; i < 5000; ++i) {
-      add(cloud, coordinate(), coordinate(), coordinate());
-      if (i % 7 == 0) add(cloud, cloud.x.back(), cloud.y.back(), cloud.z.back());
+      add_point(cloud, coordinate(), coordinate(), coordinate());
+      if (i % 7 == 0) add_point(cloud, cloud.x.back(), cloud.y.back(), cloud.z.back());
     }
     RcpccOptions options;
     options.elevation_min_deg = -45;
     const Projected p = project(cloud, options);
     EXPECT_EQ(p.counts.points_in, cloud.size());
-    EXPECT_EQ(sum_of_losses(p.counts), p.counts.points_in);
+    EXPECT_EQ(sum_without_input(p.counts), p.counts.points_in);
     EXPECT_EQ(occupied(p.image), p.counts.points_coded);
     EXPECT_GT(p.counts.not_finite, 0U);
     EXPECT_GT(p.counts.zero_range, 0U);
@@ -191,15 +188,15 @@ TEST(SphericalGrid, CountsEveryPointOnce) {
 
 TEST(SphericalGrid, NamesTheReasonOfEveryLoss) {
   PointCloud cloud;
-  add(cloud, kNan, 1, 1);
-  add(cloud, 1, kInfinity, 1);
-  add(cloud, 1, 1, -kInfinity);
-  add(cloud, 0, 0, 0);
-  add(cloud, 0.0003, -0.0003, 0);  // rounds to 0 mm
-  add(cloud, 501, 0, 0);
-  add(cloud, 1e30, 0, 0);
-  add(cloud, 10, 0.01, 0.01);
-  add(cloud, 10, 0.01, 0.01);
+  add_point(cloud, kNan, 1, 1);
+  add_point(cloud, 1, kInfinity, 1);
+  add_point(cloud, 1, 1, -kInfinity);
+  add_point(cloud, 0, 0, 0);
+  add_point(cloud, 0.0003, -0.0003, 0);  // rounds to 0 mm
+  add_point(cloud, 501, 0, 0);
+  add_point(cloud, 1e30, 0, 0);
+  add_point(cloud, 10, 0.01, 0.01);
+  add_point(cloud, 10, 0.01, 0.01);
   const SweepCounts counts = project(cloud, {}).counts;
   EXPECT_EQ(counts.not_finite, 3U);
   EXPECT_EQ(counts.zero_range, 2U);
@@ -210,11 +207,11 @@ TEST(SphericalGrid, NamesTheReasonOfEveryLoss) {
 
 TEST(SphericalGrid, WholeSphereHasNoBlindSpot) {
   PointCloud cloud;
-  add(cloud, 0, 0, 5);
-  add(cloud, 0, 0, -5);
-  add(cloud, -5, 0, 0);  // azimuth exactly pi
-  add(cloud, -5, -0.0, 0);
-  add(cloud, -5, -1e-30, 0);
+  add_point(cloud, 0, 0, 5);
+  add_point(cloud, 0, 0, -5);
+  add_point(cloud, -5, 0, 0);  // azimuth exactly pi
+  add_point(cloud, -5, -0.0, 0);
+  add_point(cloud, -5, -1e-30, 0);
   for (const double step : {0.05, 0.3, 0.5, 0.7, 1.0, 7.0, 10.0}) {
     RcpccOptions options;
     options.params.azimuth_step_deg = step;
@@ -241,7 +238,7 @@ TEST(SphericalGrid, OfNothingHasNoRows) {
   EXPECT_EQ(p.counts, SweepCounts{});
   EXPECT_EQ(p.image.grid.rows, 0);
   PointCloud cloud;
-  add(cloud, 1, 2, 3);
+  add_point(cloud, 1, 2, 3);
   SphericalUnprojector().unproject(p.image, cloud);
   EXPECT_TRUE(cloud.empty());
 }
@@ -249,8 +246,8 @@ TEST(SphericalGrid, OfNothingHasNoRows) {
 TEST(SphericalGrid, OfEquallyNearPointsTheShorterRangeWins) {
   for (const bool near_first : {true, false}) {
     PointCloud cloud;
-    add(cloud, near_first ? 4.0 : 16.0, near_first ? 0.015625 : 0.0625, 0);
-    add(cloud, near_first ? 16.0 : 4.0, near_first ? 0.0625 : 0.015625, 0);
+    add_point(cloud, near_first ? 4.0 : 16.0, near_first ? 0.015625 : 0.0625, 0);
+    add_point(cloud, near_first ? 16.0 : 4.0, near_first ? 0.0625 : 0.015625, 0);
     const Projected p = project(cloud, {});
     EXPECT_EQ(p.counts.collided, 1U);
     EXPECT_EQ(*std::max_element(p.image.range_mm.begin(), p.image.range_mm.end()), 4000);

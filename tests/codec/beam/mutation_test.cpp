@@ -1,7 +1,6 @@
 // Damaged frames of codec beam, their checksums made right: an error and no cloud, or a cloud.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <numeric>
 #include <tuple>
 
@@ -9,6 +8,7 @@
 #include "codec/beam/model_bytes.hpp"
 #include "codec/beam/octree.hpp"
 #include "codec/beam/sensor.hpp"
+#include "codec/damage.hpp"
 #include "codec/frame_layout.hpp"
 #include "core/crc32.hpp"
 #include "repair_frame.hpp"
@@ -17,6 +17,7 @@ namespace sweepcast {
 namespace {
 
 using test::Bytes;
+using test::mutate;
 using test::random_bits;
 using test::uniform_int;
 
@@ -35,29 +36,6 @@ std::vector<Bytes> sound_frames() {
   }
   frames.push_back(test::encode(test::beam_options(0.05), strays));
   return frames;
-}
-
-/// One to four flips, changed bytes, insertions or deletions.
-void mutate(std::mt19937& random, Bytes& bytes) {
-  for (int n = uniform_int(random, 1, 4); n > 0 && !bytes.empty(); --n) {
-    // Half of them near the front, where heads and sizes are.
-    const std::size_t within =
-        random_bits(random) % 2 == 0 ? bytes.size() : std::min<std::size_t>(bytes.size(), 300);
-    const auto at = bytes.begin() + static_cast<std::ptrdiff_t>(random_bits(random) % within);
-    switch (random_bits(random) % 4) {
-      case 0:
-        *at ^= static_cast<std::byte>(1U << (random_bits(random) % 8));
-        break;
-      case 1:
-        *at = static_cast<std::byte>(random_bits(random));
-        break;
-      case 2:
-        bytes.insert(at, static_cast<std::byte>(random_bits(random)));
-        break;
-      default:
-        bytes.erase(at, std::min(bytes.end(), at + uniform_int(random, 1, 20)));
-    }
-  }
 }
 
 bool expect_plausible(Decoder& decoder, const Bytes& frame, PointCloud& cloud) {
@@ -96,7 +74,7 @@ TEST(BeamMutation, ParsersBehindTheChecksumsHold) {
   int decoded = 0;
   for (int i = 0; i < 3000; ++i) {
     Bytes damaged = frames[random_bits(random) % frames.size()];
-    mutate(random, damaged);
+    mutate(random, frames, damaged);
     fuzz::repair_checksums(damaged);
     decoded += expect_plausible(decoder, damaged, cloud) ? 1 : 0;
   }
