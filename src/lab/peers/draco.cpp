@@ -13,9 +13,10 @@ namespace {
 
 constexpr auto kPosition = draco::GeometryAttribute::POSITION;
 
-/// The finite points as Draco wants them.
-std::unique_ptr<draco::PointCloud> to_draco(const PointCloud& cloud) {
-  std::vector<std::array<float, 3>> points;
+using Points = std::vector<std::array<float, 3>>;
+
+Points finite_points(const PointCloud& cloud) {
+  Points points;
   points.reserve(cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const std::array<float, 3> point{cloud.x[i], cloud.y[i], cloud.z[i]};
@@ -23,6 +24,11 @@ std::unique_ptr<draco::PointCloud> to_draco(const PointCloud& cloud) {
       points.push_back(point);
     }
   }
+  return points;
+}
+
+/// At least one point, as Draco wants them.
+std::unique_ptr<draco::PointCloud> to_draco(const Points& points) {
   auto attribute = std::make_unique<draco::PointAttribute>();
   attribute->Init(kPosition, 3, draco::DT_FLOAT32, false, points.size());
   attribute->buffer()->Write(0, points.data(), points.size() * sizeof(points[0]));
@@ -63,10 +69,10 @@ class DracoPeer : public Peer {
   }
 
   Result<std::span<const std::byte>> encode(const PointCloud& cloud) override {
-    const auto points = to_draco(cloud);
+    const Points points = finite_points(cloud);
+    if (points.empty()) return std::span<const std::byte>{};  // Draco refuses these
     buffer_.Clear();
-    if (points->num_points() == 0) return std::span<const std::byte>{};  // Draco refuses these
-    const draco::Status status = encoder_.EncodePointCloudToBuffer(*points, &buffer_);
+    const draco::Status status = encoder_.EncodePointCloudToBuffer(*to_draco(points), &buffer_);
     if (!status.ok()) return tl::unexpected(failed(status).error());
     return std::as_bytes(std::span(buffer_.data(), buffer_.size()));
   }
