@@ -36,8 +36,8 @@ TEST_F(Interruption, KeepsTheOldFileAndNoOther) {
 
 TEST_F(Interruption, ShowsInAShellsStatus) {
   const Outcome outcome = shell(
-      "\"$SWEEPCAST\" encode many -o x.sweep & while ! ls .x.sweep.*.tmp >&2; do :; done; "
-      "kill -TERM $!; wait $!; echo $?");
+      "\"$SWEEPCAST\" encode many -o x.sweep & "
+      "until [ -e x.sweep ] || ls .x.sweep.*.tmp >&2; do :; done; kill -TERM $!; wait $!; echo $?");
   EXPECT_EQ(outcome.out, "143\n");
   EXPECT_EQ(list("."), (Names{"many", "room.sweep", "sweeps"}));
 }
