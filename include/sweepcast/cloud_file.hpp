@@ -36,8 +36,8 @@ enum class CloudEncoding : std::uint8_t { ascii, binary, binary_compressed };
 /// fourth column is intensity. Coordinates that are NaN or infinite stay so.
 ///
 /// Errors: not_found, io, corrupt (with the line or byte at fault), truncated, unsupported
-/// (extension, content of another kind, as text or random bytes in a .bin, no x y z), limit (over 2^24 points or 1 GiB). Messages
-/// start with the file's path; the cloud is then empty.
+/// (extension, content of another kind, as text or random bytes in a .bin, no x y z), limit (over
+/// 2^24 points or 1 GiB). Messages start with the file's path; the cloud is then empty.
 [[nodiscard]] Status read_cloud(const std::filesystem::path& path, PointCloud& cloud);
 
 /// Writes one cloud under a temporary name in the same folder and renames it, so that a file is
