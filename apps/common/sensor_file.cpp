@@ -42,6 +42,24 @@ std::int32_t units(const Json& json, const std::string& member, double per_one) 
   return static_cast<std::int32_t>(value);
 }
 
+std::array<std::int32_t, 3> vector_from(const Json& json, const std::string& member,
+                                        double per_one) {
+  const auto found = json.find(member);
+  if (found == json.end() || !found->is_array() || found->size() != 3) {
+    throw Fault{"no three numbers \"" + member + "\""};
+  }
+  std::array<std::int32_t, 3> vector{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    vector[i] = units(Json{{member, (*found)[i]}}, member, per_one);
+  }
+  return vector;
+}
+
+Mount mount_from(const Json& json) {
+  return {vector_from(json, "translation_m", kLengthUnits),
+          vector_from(json, "rotation_deg", kAngleUnits)};
+}
+
 SensorModel model_from(const Json& json) {
   SensorModel model;
   model.ticks_per_turn = units(json, "ticks_per_turn", 1.0);
@@ -49,6 +67,7 @@ SensorModel model_from(const Json& json) {
   for (const auto& [direction, word] : kDirections) {
     if (json.contains("direction") && json["direction"] == word) model.direction = direction;
   }
+  if (json.contains("mount")) model.mount = mount_from(json["mount"]);
   const auto beams = json.find("beams");
   if (beams == json.end() || !beams->is_array()) throw Fault{"no list \"beams\""};
   if (beams->size() > static_cast<std::size_t>(kMaxBeams)) throw Fault{"over 1024 beams"};
@@ -59,6 +78,9 @@ SensorModel model_from(const Json& json) {
     b.azimuth_offset = units(beam, "azimuth_offset_deg", kAngleUnits);
     b.lateral_offset = units(beam, "lateral_offset_m", kLengthUnits);
     b.lag = units(beam, "lag_ticks", 1.0);
+    if (beam.contains("time_offset_deg")) {
+      b.time_offset = units(beam, "time_offset_deg", kAngleUnits);
+    }
     model.beams.push_back(b);
   }
   std::stable_sort(model.beams.begin(), model.beams.end(),
@@ -68,12 +90,24 @@ SensorModel model_from(const Json& json) {
 
 }  // namespace
 
+Json mount_json(const Mount& mount) {
+  Json json;
+  for (const std::int32_t v : mount.translation) {
+    json["translation_m"].push_back(static_cast<double>(v) / kLengthUnits);
+  }
+  for (const std::int32_t v : mount.rotation) {
+    json["rotation_deg"].push_back(static_cast<double>(v) / kAngleUnits);
+  }
+  return json;
+}
+
 Json sensor_json(const SensorModel& model) {
   Json json{{"ticks_per_turn", model.ticks_per_turn}};
   for (const auto& [direction, word] : kDirections) {
     if (model.direction == direction) json["direction"] = word;
   }
   json["jitter_ticks"] = model.jitter;
+  if (model.mount != Mount{}) json["mount"] = mount_json(model.mount);
   json["beams"] = Json::array();
   for (const Beam& beam : model.beams) {
     const double tangent = static_cast<double>(beam.tan_elevation) / kTangentUnits;
@@ -84,7 +118,8 @@ Json sensor_json(const SensorModel& model) {
          {"height_m", static_cast<double>(beam.height) / kLengthUnits},
          {"azimuth_offset_deg", static_cast<double>(beam.azimuth_offset) / kAngleUnits},
          {"lateral_offset_m", static_cast<double>(beam.lateral_offset) / kLengthUnits},
-         {"lag_ticks", beam.lag}});
+         {"lag_ticks", beam.lag},
+         {"time_offset_deg", static_cast<double>(beam.time_offset) / kAngleUnits}});
   }
   return json;
 }

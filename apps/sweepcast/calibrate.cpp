@@ -108,6 +108,8 @@ Json motions_json(const std::vector<Motion>& motions, const std::vector<fs::path
     for (const std::int32_t v : m.rotation) {
       entry["rotation_deg"].push_back(static_cast<double>(v) / kAngleUnits);
     }
+    entry["nod"] = static_cast<double>(m.nod) / kTangentUnits;
+    entry["mount"] = mount_json(m.mount);
     list.push_back(std::move(entry));
   }
   return list;
@@ -150,6 +152,17 @@ void report_text(const SensorEstimate& estimate, const GridFigures& grid) {
     fmt::print(
         "deskewed   by {:.3f} {:.3f} {:.3f} m and {:.3f} {:.3f} {:.3f} degrees a turn (first "
         "sweep)\n",
+        static_cast<double>(m.translation[0]) / kLengthUnits,
+        static_cast<double>(m.translation[1]) / kLengthUnits,
+        static_cast<double>(m.translation[2]) / kLengthUnits,
+        static_cast<double>(m.rotation[0]) / kAngleUnits,
+        static_cast<double>(m.rotation[1]) / kAngleUnits,
+        static_cast<double>(m.rotation[2]) / kAngleUnits);
+  }
+  if (model.mount != Mount{}) {
+    const Mount& m = model.mount;
+    fmt::print(
+        "mount      {:.3f} {:.3f} {:.3f} m and {:.3f} {:.3f} {:.3f} degrees from the cloud\n",
         static_cast<double>(m.translation[0]) / kLengthUnits,
         static_cast<double>(m.translation[1]) / kLengthUnits,
         static_cast<double>(m.translation[2]) / kLengthUnits,

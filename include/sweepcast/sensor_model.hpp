@@ -30,8 +30,22 @@ struct Beam {
   std::int32_t azimuth_offset = 0;  ///< 1e-6 degree
   std::int32_t lateral_offset = 0;  ///< 10 um, of the beam's origin to the left of its direction
   std::int32_t lag = 0;             ///< ticks from the firing's to the beam's own, may be negative
+  /// 1e-6 degree; what a motion's time is ahead of the beam's azimuth: 0 where sweeps are deskewed
+  /// by azimuth, or not at all; else, deskewed by time stamps, the firing's azimuth less the
+  /// beam's.
+  std::int32_t time_offset = 0;
 
   [[nodiscard]] bool operator==(const Beam&) const = default;
+};
+
+/// Where a sensor sits in the frame of its clouds, as in that of a vehicle: the cloud's point q is
+/// the sensor's own p = R(rotation) q + translation, where R turns about the vector `rotation` by
+/// its length.
+struct Mount {
+  std::array<std::int32_t, 3> translation{};  ///< 10 um
+  std::array<std::int32_t, 3> rotation{};     ///< 1e-6 degree
+
+  [[nodiscard]] bool operator==(const Mount&) const = default;
 };
 
 /// A spinning LiDAR.
@@ -41,6 +55,7 @@ struct SensorModel {
   /// Ticks by which beams of one firing may be off their lag, as where a driver rounds azimuths.
   std::int32_t jitter = 0;
   std::vector<Beam> beams;  ///< from the highest elevation down
+  Mount mount;              ///< sensor <- cloud; all zero where clouds are in the sensor's frame
 
   [[nodiscard]] bool operator==(const SensorModel&) const = default;
 };
@@ -50,24 +65,32 @@ inline constexpr std::int32_t kMaxTicks = 1 << 20;
 
 /// Whether the numbers of a model are within their bounds: 1 to kMaxBeams beams in order, 1 to
 /// kMaxTicks ticks, |tan_elevation| at most 100, offsets of at most 10 m and 360 degrees, |lag| at
-/// most a turn. Error: invalid_argument, with the number at fault.
+/// most a turn, a mount of at most 100 m and 90 degrees. Error: invalid_argument, with the number
+/// at fault.
 [[nodiscard]] Status check(const SensorModel& model);
 
 /// A constant twist that a deskewed sweep was moved by. The sensor's own point p relates to the
-/// deskewed one q by  p = R(s * rotation) q + s * translation, where R turns about the vector
-/// `rotation` by its length. The time s is in turns, from -1/2 to 1/2, and runs with the azimuth
-/// of p: s = (t - zero_tick) / ticks_per_turn, t the tick at which p was measured, and the
-/// beam's own offsets added. All six numbers are for a whole turn.
+/// deskewed one q by  p = R(s * rotation) m + s * translation, m = mount applied to q, where R
+/// turns about the vector `rotation` by its length. The time s is in turns, from -1/2 to 1/2, and
+/// runs with the azimuth of p: s = (t - zero_tick) / ticks_per_turn, t the tick at which p was
+/// measured, and the beam's own offsets added; then the beam's time offset. All six numbers are for
+/// a whole turn.
 struct Motion {
   std::array<std::int32_t, 3> translation{};  ///< 10 um
   std::array<std::int32_t, 3> rotation{};     ///< 1e-6 degree
   std::int32_t zero_tick = 0;                 ///< where s is 0; 0 is forward
+  /// Nodding once a turn, which a twist does not have: the sensor's own points are lower by their
+  /// horizontal distance times this; 2^-24.
+  std::int32_t nod = 0;
+  /// Takes the place of the model's: where sweeps are brought to the time at which they begin or
+  /// end, it follows the speed.
+  Mount mount;
 
   [[nodiscard]] bool operator==(const Motion&) const = default;
 };
 
 /// Whether a motion is within its bounds: |translation| at most 1 km and |rotation| 90 degrees a
-/// turn each, |zero_tick| at most a turn. Error: invalid_argument.
+/// turn each, |zero_tick| at most a turn, the mount as in a model. Error: invalid_argument.
 [[nodiscard]] Status check(const Motion& motion, const SensorModel& model);
 
 /// How well a model explains points.
@@ -109,8 +132,9 @@ struct SensorEstimateOptions {
 [[nodiscard]] Result<SensorEstimate> estimate_sensor_model(
     std::span<const CloudView> sweeps, const SensorEstimateOptions& options = {});
 
-/// Finds the twist that a sweep was deskewed by, the sensor's model known. `guess`: the motion of
-/// the sweep before, where there is one; null searches all.
+/// Finds the twist that a sweep was deskewed by, and its mount, the sensor's model known. `guess`:
+/// the motion of the sweep before, where there is one; null searches all, from the model's mount,
+/// for a sweep that begins and ends behind the sensor.
 [[nodiscard]] Motion estimate_motion(const CloudView& cloud, const SensorModel& model,
                                      const Motion* guess);
 

@@ -46,7 +46,7 @@ std::complex<double> phasor(std::span<const Sample> samples, double ticks, doubl
   for (const Sample& s : samples) {
     const double phase = ticks * (s.turn - lateral * s.inverse_rho / kTurn);
     const double weight = 1.0 / (s.inverse_rho + 0.1);
-    const SinCos at = sin_cos(kTurn * wrap(phase));
+    const SinCos at = unit_phasor(wrap(phase));
     re += weight * at.cos;
     im += weight * at.sin;
     weights += weight;
@@ -149,13 +149,24 @@ class LagFinder {
   [[nodiscard]] int best_lag(std::size_t k, int enough) const {
     std::vector<std::int64_t> score(2 * static_cast<std::size_t>(reach_) + 1, 0);
     for (std::size_t n = 0; n < fired_.size(); ++n) {
+      const std::vector<int>& fired = fired_[n];
+      struct Firing {
+        int tick, weight;
+      };
+      std::vector<Firing> occupied;  // a turn and the reach beyond either end
+      for (int tick = -reach_; tick < turn_ + reach_; ++tick) {
+        const int beams = fired[static_cast<std::size_t>(wrapped(tick))];
+        if (beams != 0) occupied.push_back({tick, std::min(beams, enough)});
+      }
       const auto& own = ticks_[n][k];
       const std::size_t step = own.size() / 1500 + 1;
       for (std::size_t i = 0; i < own.size(); i += step) {
-        int at = wrapped(own[i] - reach_);
-        for (int lag = reach_; lag >= -reach_; --lag) {
-          score[index(lag)] += std::min(fired_[n][static_cast<std::size_t>(at)], enough);
-          if (++at == turn_) at = 0;
+        const int at = wrapped(own[i]);
+        for (auto near =
+                 std::lower_bound(occupied.begin(), occupied.end(), at - reach_,
+                                  [](const Firing&firing, int tick) { return firing.tick < tick; });
+             near != occupied.end() && near->tick <= at + reach_; ++near) {
+          score[index(at - near->tick)] += near->weight;
         }
       }
     }

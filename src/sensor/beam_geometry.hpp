@@ -15,8 +15,9 @@ struct BeamGeometry {
   double inverse_slant = 1.0;  ///< horizontal distance per distance along the beam
   double height_m = 0.0;
   double lateral_m = 0.0;
-  double phase = 0.0;    ///< azimuth offset, ticks
-  double azimuth = 0.0;  ///< azimuth offset and lag together, radians
+  double phase = 0.0;       ///< azimuth offset, ticks
+  double azimuth = 0.0;     ///< azimuth offset and lag together, radians
+  double time_turns = 0.0;  ///< time offset
 };
 
 [[nodiscard]] std::vector<BeamGeometry> beam_geometry(const SensorModel& model);

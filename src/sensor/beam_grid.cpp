@@ -51,7 +51,11 @@ struct BeamProjector::State {
   };
 
   explicit State(const SensorModel& sensor)
-      : model(sensor), geometry(beam_geometry(sensor)), locator(sensor) {}
+      : model(sensor), geometry(beam_geometry(sensor)), locator(sensor) {
+    for (const Beam& beam : model.beams) {
+      has_time_offsets = has_time_offsets || beam.time_offset != 0;
+    }
+  }
 
   void use_copies() {
     px = x;
@@ -60,7 +64,10 @@ struct BeamProjector::State {
   }
   void locate(std::size_t count, const BeamGridOptions& options);
   void locate_batch(std::size_t begin, std::size_t end, const BeamGridOptions& options);
+  void undo_mount(const Mount& mount, std::size_t begin, std::size_t end);
   void undo_motion(const Motion& motion, std::size_t begin, std::size_t end);
+  void undo_nod(const Motion& motion, std::size_t begin, std::size_t end);
+  void shift_times(const Motion& motion, std::size_t begin, std::size_t end);
   void drop_mistimed(const Motion& motion);
   void fill(const BeamGridOptions& options, BeamImage& image);
   [[nodiscard]] bool takes(std::size_t i, const BeamImage& image, std::size_t cell) const;
@@ -75,6 +82,7 @@ struct BeamProjector::State {
   BeamLocator locator;
   LocatedPoints located;
   ColumnFinder columns;
+  bool has_time_offsets = false;
 
   std::span<const std::uint32_t> subset;
   std::span<const float> px, py, pz;  // the points, in the sensor's frame
@@ -101,6 +109,18 @@ void BeamProjector::State::locate_batch(std::size_t begin, std::size_t end,
     places[begin + i] = {found ? located.firing[i] : -1,
                          static_cast<std::uint16_t>(located.beam[i])};
     if (!found) reasons[begin + i] = why_lost(px[begin + i], py[begin + i], pz[begin + i]);
+  }
+}
+
+// From the cloud's frame to the sensor's, in place; "no return" stays at the origin.
+void BeamProjector::State::undo_mount(const Mount& mount, std::size_t begin, std::size_t end) {
+  const Twist<float> twist(mount);
+  for (std::size_t i = begin; i < end; ++i) {
+    const bool origin = x[i] == 0.0F && y[i] == 0.0F && z[i] == 0.0F;
+    const auto p = twist.undo({x[i], y[i], z[i]}, 1.0F);
+    x[i] = origin ? 0.0F : p[0];
+    y[i] = origin ? 0.0F : p[1];
+    z[i] = origin ? 0.0F : p[2];
   }
 }
 
@@ -137,14 +157,40 @@ void BeamProjector::State::undo_motion(const Motion& motion, std::size_t begin, 
   }
 }
 
+// The same where a beam's time is ahead of its azimuth: on from the point that `undo_motion` gave.
+void BeamProjector::State::shift_times(const Motion& motion, std::size_t begin, std::size_t end) {
+  const Twist<float> twist(motion);
+  for (std::size_t i = begin; i < end; ++i) {
+    const float rho = std::sqrt(x[i] * x[i] + y[i] * y[i]);
+    if (!(rho > 1e-4F && rho < 1e5F)) continue;  // has no place anyway
+    const std::size_t k = locator.nearest_beam(rho, z[i]);
+    const auto q = twist.redo({x[i], y[i], z[i]}, times[i]);
+    const auto p = twist.undo(q, times[i] + static_cast<float>(geometry[k].time_turns));
+    x[i] = p[0];
+    y[i] = p[1];
+    z[i] = p[2];
+  }
+}
+
+// After the twist, as the beams' last way up or down.
+void BeamProjector::State::undo_nod(const Motion& motion, std::size_t begin, std::size_t end) {
+  const auto nod = static_cast<float>(nod_of(motion));
+  for (std::size_t i = begin; i < end; ++i) z[i] -= nod * std::sqrt(x[i] * x[i] + y[i] * y[i]);
+}
+
 void BeamProjector::State::locate(std::size_t count, const BeamGridOptions& options) {
   places.resize(count);
   samples.resize(count);
   reasons.resize(count);
   times.resize(options.motion ? count : 0);
+  const Mount& mount = mount_of(model, options.motion);
+  const bool mounted = mount != Mount{};
   for (std::size_t begin = 0; begin < count; begin += kBatch) {
     const std::size_t end = std::min(begin + kBatch, count);
+    if (mounted) undo_mount(mount, begin, end);
     if (options.motion) undo_motion(*options.motion, begin, end);
+    if (options.motion && options.motion->nod != 0) undo_nod(*options.motion, begin, end);
+    if (options.motion && has_time_offsets) shift_times(*options.motion, begin, end);
     locate_batch(begin, end, options);
   }
   if (options.motion) drop_mistimed(*options.motion);
@@ -284,7 +330,7 @@ void BeamProjector::project(std::span<const float> x, std::span<const float> y,
   s.px = x;
   s.py = y;
   s.pz = z;
-  if (options.motion) {
+  if (options.motion || s.model.mount != Mount{}) {  // they are moved
     s.x.assign(x.begin(), x.end());
     s.y.assign(y.begin(), y.end());
     s.z.assign(z.begin(), z.end());

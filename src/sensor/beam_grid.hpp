@@ -121,6 +121,7 @@ class BeamUnprojector {
   void decode_row(const BeamImage& image, int k);
   void add_residuals(const BeamImage& image, int k);
   void redo_motion(const BeamImage& image, int k);
+  void redo_mount(const Mount& mount);
 
   SensorModel model_;
   std::vector<BeamGeometry> beams_;

@@ -66,6 +66,7 @@ void BeamUnprojector::decode_row(const BeamImage& image, int k) {
   }
   if (!image.azimuth_residual.empty()) add_residuals(image, k);
   if (image.motion) redo_motion(image, k);
+  if (const Mount& mount = mount_of(model_, image.motion); mount != Mount{}) redo_mount(mount);
 }
 
 void BeamUnprojector::add_residuals(const BeamImage& image, int k) {
@@ -96,13 +97,25 @@ void BeamUnprojector::redo_motion(const BeamImage& image, int k) {
       (model_.beams[static_cast<std::size_t>(k)].lag - image.motion->zero_tick) % ticks;
   if (ahead < 0) ahead += ticks;
   const Twist<double> twist(*image.motion);
+  const double nod = nod_of(*image.motion);
   for (std::size_t j = 0; j < cols; ++j) {
     std::int32_t tick = image.firing_tick[j] + ahead;
     tick = tick >= ticks ? tick - ticks : tick;
     tick = 2 * tick >= ticks ? tick - ticks : tick;
-    const double aside = lateral_turns(beam, range[j] * beam.inverse_slant / kRangeUnits);
-    const double time = (tick + beam.phase) / ticks + aside;
-    const auto q = twist.redo({x_[j], y_[j], z_[j]}, time);
+    const double rho = range[j] * beam.inverse_slant / kRangeUnits;
+    const double aside = lateral_turns(beam, rho);
+    const double time = (tick + beam.phase) / ticks + aside + beam.time_turns;
+    const auto q = twist.redo({x_[j], y_[j], z_[j] + nod * rho}, time);
+    x_[j] = static_cast<float>(q[0]);
+    y_[j] = static_cast<float>(q[1]);
+    z_[j] = static_cast<float>(q[2]);
+  }
+}
+
+void BeamUnprojector::redo_mount(const Mount& mount) {
+  const Twist<double> twist(mount);
+  for (std::size_t j = 0; j < x_.size(); ++j) {
+    const auto q = twist.redo({x_[j], y_[j], z_[j]}, 1.0);
     x_[j] = static_cast<float>(q[0]);
     y_[j] = static_cast<float>(q[1]);
     z_[j] = static_cast<float>(q[2]);

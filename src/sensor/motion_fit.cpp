@@ -13,20 +13,46 @@ namespace sweepcast {
 namespace {
 
 constexpr double kTurn = 2.0 * kPi;
+constexpr double kFixed = 1e12;  // weight of a prior that holds a number where it is
 
-// What one more unit of each number of the twist does to a point p at time s: s (w x p + v).
-struct Influence {
-  std::array<double, 6> x, y, z;
-};
-
-Influence influence(const std::array<double, 3>& p, double s) {
-  return {{s, 0, 0, 0, s * p[2], -s * p[1]},
-          {0, s, 0, -s * p[2], 0, s * p[0]},
-          {0, 0, s, s * p[1], -s * p[0], 0}};
+// What one more unit of each number does to a residual that moves with `slope` in the sensor's
+// frame, for a point p at time s: the twist moves p by s (w x p + v), the mount by w x p + v.
+MotionVector influence(const std::array<double, 3>& p, double s,
+                       const std::array<double, 3>& slope) {
+  const std::array<double, 3> turn{p[1] * slope[2] - p[2] * slope[1],
+                                   p[2] * slope[0] - p[0] * slope[2],
+                                   p[0] * slope[1] - p[1] * slope[0]};
+  MotionVector all{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    all[i] = s * slope[i];
+    all[3 + i] = s * turn[i];
+    all[6 + i] = slope[i];
+    all[9 + i] = turn[i];
+  }
+  return all;
 }
 
-// A car: 1 m and 0.1 m a turn, hundredths of a radian.
-constexpr TwistVector kPrior{1.0, 1.0, 100.0, 1e4, 1e4, 100.0};
+// A car: 1 m and 0.1 m a turn, hundredths of a radian; about 0. The mount: decimetres and a few
+// thousandths of a radian from what was found without the twist.
+MotionPrior prior_unknown(const MotionVector& seed) {
+  MotionPrior prior{{1.0, 1.0, 100.0, 1e4, 1e4, 100.0, 4.0, 4.0, 4.0, 2e3, 2e3, 2e3, 4e6}, seed};
+  std::fill_n(prior.about.begin(), 6, 0.0);
+  return prior;
+}
+
+// What changes from sweep to sweep: half a metre a second, a few degrees a second. The nod is about
+// 0, half a milliradian.
+MotionPrior prior_near(const MotionVector& guess) {
+  MotionPrior prior{{400.0, 400.0, 2500.0, 4e4, 4e4, 2500.0, 1e3, 1e3, 1e3, 4e4, 4e4, 4e4, 4e6},
+                    guess};
+  prior.about[kNod] = 0.0;
+  return prior;
+}
+
+void hold(MotionPrior& prior, std::size_t number, const MotionVector& motion) {
+  prior.weight[number] = kFixed;
+  prior.about[number] = motion[number];
+}
 
 double robust(double residual, double scale) {
   const double e = residual / scale;
@@ -38,40 +64,80 @@ double wrap(double phase) {
   return phase - std::floor(phase + 0.5);
 }
 
-void add_to(TwistVector& twist, const TwistVector& step) {
-  for (std::size_t i = 0; i < 6; ++i) twist[i] += step[i];
+void add_to(MotionVector& motion, const MotionVector& step) {
+  for (std::size_t i = 0; i < motion.size(); ++i) motion[i] += step[i];
 }
+
+std::vector<BeamLine> lines_of(const std::vector<BeamGeometry>& beams) {
+  std::vector<BeamLine> lines;
+  lines.reserve(beams.size());
+  for (const BeamGeometry& beam : beams) lines.push_back({beam.tan, beam.height_m, 0});
+  return lines;
+}
+
+// Both parts of a motion, ready to be undone.
+struct Undoing {
+  explicit Undoing(const Motion& motion) : twist(motion), mount(motion.mount) {}
+
+  Twist<double> twist, mount;
+};
 
 }  // namespace
 
-Motion quantised_motion(const TwistVector& twist) {
-  Motion motion;
+Motion quantised_motion(const MotionVector& motion, int zero_tick) {
+  const auto length = [](double metres) {
+    return static_cast<std::int32_t>(std::lround(metres * kLengthUnits));
+  };
+  const auto angle = [](double radians) {
+    return static_cast<std::int32_t>(std::lround(radians / kDegree * kAngleUnits));
+  };
+  Motion result;
   for (std::size_t i = 0; i < 3; ++i) {
-    motion.translation[i] = static_cast<std::int32_t>(std::lround(twist[i] * kLengthUnits));
-    motion.rotation[i] =
-        static_cast<std::int32_t>(std::lround(twist[i + 3] / kDegree * kAngleUnits));
+    result.translation[i] = length(motion[i]);
+    result.rotation[i] = angle(motion[i + 3]);
+    result.mount.translation[i] = length(motion[i + 6]);
+    result.mount.rotation[i] = angle(motion[i + 9]);
   }
-  return motion;
+  result.nod = static_cast<std::int32_t>(std::lround(motion[kNod] * kTangentUnits));
+  result.zero_tick = zero_tick;
+  return result;
 }
 
-TwistVector twist_vector(const Motion& motion) {
-  TwistVector twist{};
+MotionVector motion_vector(const Motion& motion) {
+  MotionVector vector{};
   for (std::size_t i = 0; i < 3; ++i) {
-    twist[i] = static_cast<double>(motion.translation[i]) / kLengthUnits;
-    twist[i + 3] = static_cast<double>(motion.rotation[i]) / kAngleUnits * kDegree;
+    vector[i] = static_cast<double>(motion.translation[i]) / kLengthUnits;
+    vector[i + 3] = static_cast<double>(motion.rotation[i]) / kAngleUnits * kDegree;
+    vector[i + 6] = static_cast<double>(motion.mount.translation[i]) / kLengthUnits;
+    vector[i + 9] = static_cast<double>(motion.mount.rotation[i]) / kAngleUnits * kDegree;
   }
-  return twist;
+  vector[kNod] = nod_of(motion);
+  return vector;
 }
 
-void undo_motion(const CloudView& cloud, const Motion& motion, PointCloud& own) {
-  const Twist<double> twist(motion);
+void undo_motion(const CloudView& cloud, const MotionVector& motion, double zero,
+                 const SensorModel* model, PointCloud& own) {
+  const Undoing undoing(quantised_motion(motion, 0));
+  std::vector<BeamGeometry> beams;
+  if (model != nullptr) beams = beam_geometry(*model);
+  const LineTable table = model != nullptr ? LineTable(lines_of(beams)) : LineTable();
   own.clear();
   own.resize_xyz(cloud.size);
   for (std::size_t i = 0; i < cloud.size; ++i) {
     const std::array<double, 3> q{cloud.x.at(i), cloud.y.at(i), cloud.z.at(i)};
     std::array<double, 3> p = q;
     if (q[0] * q[0] + q[1] * q[1] > 1e-8) {
-      for (int round = 0; round < 4; ++round) p = twist.undo(q, arc_tangent(p[1], p[0]) / kTurn);
+      const auto mounted = undoing.mount.undo(q, 1.0);
+      p = mounted;
+      for (int round = 0; round < 4; ++round) {
+        double s = wrap(arc_tangent(p[1], p[0]) / kTurn - zero);
+        if (model != nullptr) {
+          const double rho = std::sqrt(p[0] * p[0] + p[1] * p[1]);
+          s += beams[table.nearest(static_cast<float>(rho), static_cast<float>(p[2]))].time_turns;
+        }
+        p = undoing.twist.undo(mounted, s);
+        p[2] -= motion[kNod] * std::sqrt(p[0] * p[0] + p[1] * p[1]);
+      }
     }
     own.x[i] = static_cast<float>(p[0]);
     own.y[i] = static_cast<float>(p[1]);
@@ -79,7 +145,7 @@ void undo_motion(const CloudView& cloud, const Motion& motion, PointCloud& own) 
   }
 }
 
-MotionFitter::MotionFitter(const CloudView& cloud, std::size_t stride) {
+MotionFitter::MotionFitter(const CloudView& cloud, std::size_t stride, double zero) : zero_(zero) {
   for (std::size_t i = 0; i < cloud.size; i += stride) {
     const std::array<float, 3> p{static_cast<float>(cloud.x.at(i)),
                                  static_cast<float>(cloud.y.at(i)),
@@ -93,20 +159,52 @@ MotionFitter::MotionFitter(const CloudView& cloud, std::size_t stride) {
   z_.resize(points_.size());
 }
 
-void MotionFitter::undo(const TwistVector& twist) {
-  const Twist<double> own_motion(quantised_motion(twist));
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    const std::array<double, 3> q{points_[i][0], points_[i][1], points_[i][2]};
-    std::array<double, 3> p = q;
-    double s = 0.0;
-    for (int round = 0; round < 3; ++round) {
-      s = arc_tangent(p[1], p[0]) / kTurn;
-      p = own_motion.undo(q, s);
+// In floats and in batches, so that compilers vectorise it: this takes most of the time.
+void MotionFitter::undo(const MotionVector& motion) {
+  constexpr std::size_t kBatch = 256;
+  constexpr auto kInverseTurn = static_cast<float>(1.0 / kTurn);
+  const Motion quantised = quantised_motion(motion, 0);
+  const Twist<float> twist(quantised);
+  const Twist<float> mount(quantised.mount);
+  const auto zero = static_cast<float>(zero_);
+  const auto nod = static_cast<float>(nod_of(quantised));
+  using Batch = std::array<float, kBatch>;
+  std::array<Batch, 3> mounted{};
+  std::array<Batch, 3> own{};
+  Batch time{};
+  Batch ahead{};
+  for (std::size_t begin = 0; begin < points_.size(); begin += kBatch) {
+    const std::size_t count = std::min(kBatch, points_.size() - begin);
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto p = mount.undo(points_[begin + i], 1.0F);
+      for (std::size_t n = 0; n < 3; ++n) mounted[n][i] = own[n][i] = p[n];
+      if (!time_offsets_.empty()) {
+        ahead[i] = static_cast<float>(time_offsets_[beam_[begin + i]]);
+      }
     }
-    own_[i] = p;
-    time_[i] = s;
-    rho_[i] = static_cast<float>(std::sqrt(p[0] * p[0] + p[1] * p[1]));
-    z_[i] = static_cast<float>(p[2]);
+    for (int round = 0; round < 3; ++round) {
+      for (std::size_t i = 0; i < count; ++i) {
+        float s = arc_tangent_fast(own[1][i], own[0][i]) * kInverseTurn - zero;
+        s = s < -0.5F ? s + 1.0F : s;
+        s = s >= 0.5F ? s - 1.0F : s;
+        s += ahead[i];
+        const auto p = twist.undo({mounted[0][i], mounted[1][i], mounted[2][i]}, s);
+        own[0][i] = p[0];
+        own[1][i] = p[1];
+        own[2][i] = p[2];
+        time[i] = s;
+      }
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const float x = own[0][i];
+      const float y = own[1][i];
+      const float rho = std::sqrt(x * x + y * y);
+      const float z = own[2][i] - nod * rho;
+      own_[begin + i] = {x, y, z};
+      time_[begin + i] = time[i];
+      rho_[begin + i] = std::max(0.1F, rho);
+      z_[begin + i] = z;
+    }
   }
 }
 
@@ -114,225 +212,149 @@ void MotionFitter::assign(std::span<const BeamLine> lines) {
   assign_lines({rho_, z_}, lines, beam_);
 }
 
-// One Gauss-Newton step on the heights of the points at most `reach` turns from the front.
-TwistVector MotionFitter::height_step(std::span<const BeamLine> lines, bool lines_free,
-                                      double reach, double scale, TwistVector twist) {
-  TwistEquations equations(lines.size());
+double MotionFitter::height_error(std::size_t i) const {
+  const BeamLine& line = lines_[beam_[i]];
+  return own_[i][2] - (rho_[i] * line.tan + line.height);
+}
+
+// Sideways distance to the nearest tick, metres.
+double MotionFitter::aside(std::size_t i, const BeamGeometry& beam, int ticks_per_turn) const {
+  const double turn = time_[i] - beam.time_turns + zero_ - lateral_turns(beam, rho_[i]);
+  return wrap(turn * ticks_per_turn - beam.phase) / ticks_per_turn * kTurn * rho_[i];
+}
+
+// One Gauss-Newton step on the heights of the points at most `reach` turns from time 0. Lines that
+// are known count where they are far enough apart not to be mistaken for each other.
+MotionVector MotionFitter::height_step(bool lines_free, double reach, double scale,
+                                       MotionPrior prior, const MotionVector& motion) {
+  MotionEquations equations(lines_free ? lines_.size() : 0);
   for (std::size_t i = 0; i < own_.size(); ++i) {
     if (std::abs(time_[i]) > reach) continue;
-    const BeamLine& line = lines[beam_[i]];
+    // A tilt that is off shows in proportion to the distance.
+    const double wide = lines_free ? scale : scale * std::max(1.0, 0.1 * rho_[i]);
+    if (!lines_free && gap_[beam_[i]] * rho_[i] < 3.0 * wide) continue;
+    const double tan = lines_[beam_[i]].tan;
     const auto& p = own_[i];
     const double rho = rho_[i];
-    const double e = p[2] - (rho * line.tan + line.height);
-    const Influence d = influence(p, time_[i]);
-    std::array<double, 6> slope{};
-    for (std::size_t n = 0; n < 6; ++n) {
-      slope[n] = d.z[n] - line.tan * (p[0] * d.x[n] + p[1] * d.y[n]) / rho;
+    const double e = height_error(i);
+    MotionVector slope = influence(p, time_[i], {-tan * p[0] / rho, -tan * p[1] / rho, 1.0});
+    slope[kNod] = -rho;
+    if (lines_free) {
+      equations.add(beam_[i], robust(e, wide), rho, e, slope);
+    } else {
+      equations.add(robust(e, wide), e, slope);
     }
-    equations.add(beam_[i], robust(e, scale), rho, e, slope);
   }
-  const double yaw = twist[5];
-  add_to(twist, equations.solve(lines_free, kPrior, twist));
-  twist[5] = yaw;  // heights do not show it
-  return twist;
+  for (const std::size_t about_z : {5, 11}) hold(prior, about_z, motion);  // not seen
+  MotionVector moved = motion;
+  add_to(moved, equations.solve(prior, motion));
+  return moved;
 }
 
-std::optional<TwistVector> MotionFitter::bootstrap(int max_beams) {
-  TwistVector twist{};
-  undo(twist);
-  std::vector<float> rho, z;
-  for (std::size_t i = 0; i < own_.size(); ++i) {
-    if (std::abs(time_[i]) > 25.0 / 360.0) continue;
-    rho.push_back(rho_[i]);
-    z.push_back(z_[i]);
-  }
-  lines_ = find_beam_lines({rho, z}, {max_beams, 0.004});
-  if (lines_.empty()) return std::nullopt;
-  for (const double degrees : {30.0, 45.0, 65.0, 90.0, 120.0, 150.0, 181.0}) {
-    for (const double scale : {0.03, 0.015, 0.01}) {
-      assign(lines_);
-      refine_lines({rho_, z_}, beam_, scale, lines_);
-      twist = height_step(lines_, true, degrees / 360.0, scale, twist);
-      undo(twist);
-    }
-  }
-  return settle(max_beams, twist);
-}
-
-std::optional<TwistVector> MotionFitter::settle(int max_beams, TwistVector twist) {
-  undo(twist);
-  for (const double scale : {0.01, 0.005, 0.003, 0.002, 0.002, 0.002}) {
-    if (scale == 0.005 || scale == 0.003) {
-      lines_ = find_beam_lines({rho_, z_}, {max_beams, scale / 2.0});
-      if (lines_.empty()) return std::nullopt;
-    }
-    assign(lines_);
-    refine_lines({rho_, z_}, beam_, scale, lines_);
-    twist = height_step(lines_, true, 1.0, scale, twist);
-    undo(twist);
-  }
+MotionVector MotionFitter::step_on_lines(double scale, const MotionVector& start,
+                                         const MotionVector& motion) {
   assign(lines_);
-  return twist;
+  refine_lines({rho_, z_}, beam_, scale, lines_);
+  MotionPrior prior = prior_unknown(start);
+  hold(prior, 8, motion);  // the lines' own heights do for the mount's, their slopes for the nod
+  hold(prior, kNod, motion);
+  return height_step(true, 1.0, scale, prior, motion);
 }
 
-TwistVector MotionFitter::straighten(const SensorModel& model, const TwistVector* guess) {
-  lines_.clear();
-  for (const BeamGeometry& beam : beam_geometry(model)) {
-    lines_.push_back({beam.tan, beam.height_m, 0});
+MotionVector MotionFitter::straighten(const SensorModel& model, MotionVector guess, bool outwards) {
+  const std::vector<BeamGeometry> beams = beam_geometry(model);
+  lines_ = lines_of(beams);
+  gap_.assign(lines_.size(), 1.0);
+  for (std::size_t k = 1; k < lines_.size(); ++k) {
+    const double gap = lines_[k - 1].tan - lines_[k].tan;
+    gap_[k - 1] = std::min(gap_[k - 1], gap);
+    gap_[k] = std::min(gap_[k], gap);
   }
-  TwistVector twist = guess != nullptr ? *guess : TwistVector{};
-  undo(twist);
+  const MotionPrior prior = outwards ? prior_unknown(guess) : prior_near(guess);
+  MotionVector motion = guess;
+  time_offsets_.clear();
+  undo(motion);
+  assign(lines_);
+  for (const BeamGeometry& beam : beams) time_offsets_.push_back(beam.time_turns);
   const auto step = [&](double reach, double scale) {
+    motion = height_step(false, reach, scale, prior, motion);
+    undo(motion);
     assign(lines_);
-    twist = height_step(lines_, false, reach, scale, twist);
-    undo(twist);
   };
-  if (guess == nullptr) {
+  if (outwards) {
     for (const double degrees : {30.0, 45.0, 65.0, 90.0, 120.0, 150.0, 181.0}) {
       step(degrees / 360.0, 0.02);
       step(degrees / 360.0, 0.01);
     }
   }
-  for (const double scale : {0.02, 0.01, 0.005, 0.002, 0.002}) step(1.0, scale);
-  assign(lines_);
-  return twist;
+  for (const double scale :
+       {0.04, 0.04, 0.04, 0.025, 0.025, 0.015, 0.015, 0.01, 0.006, 0.004, 0.002}) {
+    step(1.0, scale);
+  }
+  return motion;
 }
 
-int MotionFitter::find_ticks() {
-  std::vector<std::size_t> order(own_.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return beam_[a] != beam_[b] ? beam_[a] < beam_[b] : time_[a] < time_[b];
-  });
-  std::vector<double> steps;
-  for (std::size_t n = 1; n < order.size() && steps.size() < 20'000; ++n) {
-    const std::size_t a = order[n - 1];
-    const std::size_t b = order[n];
-    const double apart = time_[b] - time_[a];
-    const bool same_distance = std::abs(1.0 / rho_[a] - 1.0 / rho_[b]) < 1e-3;
-    if (beam_[a] == beam_[b] && rho_[a] > 5.0F && same_distance && apart < 0.008) {
-      steps.push_back(apart);
-    }
-  }
-  if (steps.size() < 200) return 0;
-  std::vector<double> coherence;
-  for (const int ticks : encoder_ticks()) {
-    double sum = 0.0;
-    for (const double step : steps) sum += sin_cos(kTurn * wrap(step * ticks)).cos;
-    coherence.push_back(sum / static_cast<double>(steps.size()));
-  }
-  const double best = *std::max_element(coherence.begin(), coherence.end());
-  if (best < 0.5) return 0;
-  for (std::size_t c = 0; c < coherence.size(); ++c) {
-    if (coherence[c] > 0.9 * best) return encoder_ticks()[c];
-  }
-  return 0;
-}
-
-void MotionFitter::find_yaw(int ticks_per_turn, const SensorModel* model, double centre,
-                            double reach, TwistVector& twist) {
-  constexpr std::size_t kBeams = 8;
-  constexpr std::size_t kPoints = 400;
-  struct Sample {
-    double time, inverse_rho;
-  };
-  std::vector<std::vector<Sample>> samples(lines_.size());
-  for (std::size_t i = 0; i < own_.size(); ++i) {
-    if (rho_[i] > 6.0F) samples[beam_[i]].push_back({time_[i], 1.0 / rho_[i]});
-  }
-  std::vector<std::size_t> order(samples.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return samples[a].size() > samples[b].size(); });
-  order.resize(std::min(order.size(), kBeams));
-  const double turned = twist[5];  // already undone
-  const auto coherence = [&](double yaw) {
-    const double stretch = 1.0 + (yaw - turned) / kTurn;  // times are azimuths, in turns
-    double total = 0.0;
-    for (const std::size_t k : order) {
-      const std::size_t stride = samples[k].size() / kPoints + 1;
-      double best = 0.0;
-      const int laterals = model != nullptr ? 0 : 5;
-      for (int w = -laterals; w <= laterals; ++w) {
-        const double lateral =
-            model != nullptr ? static_cast<double>(model->beams[k].lateral_offset) / kLengthUnits
-                             : w * 0.0065;
-        double re = 0.0;
-        double im = 0.0;
-        for (std::size_t i = 0; i < samples[k].size(); i += stride) {
-          const Sample& s = samples[k][i];
-          const double turn = s.time * stretch - lateral * s.inverse_rho / kTurn;
-          const SinCos at = sin_cos(kTurn * wrap(turn * ticks_per_turn));
-          re += at.cos;
-          im += at.sin;
-        }
-        best = std::max(best, re * re + im * im);
-      }
-      total += std::sqrt(best);
-    }
-    return total;
-  };
-  double best = 0.0;
-  double found = turned;
-  const auto search = [&](double middle, double range, double step) {
-    const int steps = static_cast<int>(range / step);
-    for (int n = -steps; n <= steps; ++n) {
-      const double yaw = middle + n * step;
-      if (const double here = coherence(yaw); here > best) {
-        best = here;
-        found = yaw;
-      }
-    }
-  };
-  const double step = 1.5 / ticks_per_turn;
-  search(centre, reach, step);
-  search(found, step, step / 10.0);
-  twist[5] = found;
-}
-
-TwistVector MotionFitter::refine(const SensorModel& model, TwistVector twist) {
+MotionVector MotionFitter::refine(const SensorModel& model, MotionVector motion) {
   const std::vector<BeamGeometry> beams = beam_geometry(model);
-  for (const double scale : {0.004, 0.002, 0.002}) {
-    undo(twist);
+  const MotionPrior prior = prior_near(motion);
+  for (const double scale : {0.01, 0.005, 0.003, 0.002, 0.002}) {
+    undo(motion);
     assign(lines_);
-    TwistEquations equations(0);
+    MotionEquations equations(0);
     for (std::size_t i = 0; i < own_.size(); ++i) {
       const BeamGeometry& beam = beams[beam_[i]];
       const auto& p = own_[i];
       const double rho = rho_[i];
-      const Influence d = influence(p, time_[i]);
-      const double height = p[2] - (rho * beam.tan + beam.height_m);
-      std::array<double, 6> slope{};
-      for (std::size_t n = 0; n < 6; ++n) {
-        slope[n] = d.z[n] - beam.tan * (p[0] * d.x[n] + p[1] * d.y[n]) / rho;
-      }
-      equations.add(robust(height, scale), height, slope);
+      const double e = height_error(i);
+      const double tan = beam.tan;
+      MotionVector slope = influence(p, time_[i], {-tan * p[0] / rho, -tan * p[1] / rho, 1.0});
+      slope[kNod] = -rho;
+      equations.add(robust(e, scale), e, slope);
       if (rho < 2.0) continue;
-      const double at = (time_[i] - lateral_turns(beam, rho)) * model.ticks_per_turn - beam.phase;
-      const double aside = wrap(at) / model.ticks_per_turn * kTurn * rho;
-      for (std::size_t n = 0; n < 6; ++n) slope[n] = (p[0] * d.y[n] - p[1] * d.x[n]) / rho;
-      equations.add(robust(aside, scale), aside, slope);
+      const double a = aside(i, beam, model.ticks_per_turn);
+      equations.add(robust(a, scale), a, influence(p, time_[i], {-p[1] / rho, p[0] / rho, 0.0}));
     }
-    add_to(twist, equations.solve(false, kPrior, twist));
+    add_to(motion, equations.solve(prior, motion));
   }
-  undo(twist);
-  return twist;
+  return motion;
+}
+
+void MotionFitter::add_time_offsets(const SensorModel& model, const MotionVector& motion,
+                                    std::span<TimeOffsetSums> sums) const {
+  constexpr double kScale = 0.003;
+  const std::vector<BeamGeometry> beams = beam_geometry(model);
+  for (std::size_t i = 0; i < own_.size(); ++i) {
+    const std::size_t k = beam_[i];
+    const double rho = rho_[i];
+    if (rho < 2.0) continue;
+    const auto add = [&](double error, const std::array<double, 3>& slope) {
+      const MotionVector all = influence(own_[i], 1.0, slope);
+      const double speed = std::inner_product(all.begin(), all.begin() + 6, motion.begin(), 0.0);
+      const double weight = robust(error, kScale);
+      sums[k].square += weight * speed * speed;
+      sums[k].product += weight * speed * error;
+    };
+    const auto& p = own_[i];
+    const double tan = beams[k].tan;
+    add(height_error(i), {-tan * p[0] / rho, -tan * p[1] / rho, 1.0});
+    add(aside(i, beams[k], model.ticks_per_turn), {-p[1] / rho, p[0] / rho, 0.0});
+  }
 }
 
 Motion estimate_motion(const CloudView& cloud, const SensorModel& model, const Motion* guess) {
   constexpr double kMaxYawChange = 0.03;  // radians a turn, from one sweep to the next
-  const std::size_t enough = guess != nullptr ? 12'000 : 40'000;  // points
-  MotionFitter fitter(cloud, std::max<std::size_t>(1, cloud.size / enough));
-  if (fitter.empty()) return guess != nullptr ? *guess : Motion{};
-  if (guess == nullptr) {
-    TwistVector twist = fitter.straighten(model, nullptr);
-    fitter.find_yaw(model.ticks_per_turn, &model, 0.0, kMaxYaw, twist);
-    return quantised_motion(fitter.refine(model, twist));
-  }
-  const TwistVector start = twist_vector(*guess);
-  TwistVector twist = fitter.straighten(model, &start);
-  fitter.find_yaw(model.ticks_per_turn, &model, start[5], kMaxYawChange, twist);
-  return quantised_motion(fitter.refine(model, twist));
+  const std::size_t enough = guess != nullptr ? 4'000 : 40'000;  // points
+  const int zero_tick = guess != nullptr ? guess->zero_tick : 0;
+  const double zero = static_cast<double>(zero_tick) / model.ticks_per_turn;
+  MotionFitter fitter(cloud, std::max<std::size_t>(1, cloud.size / enough), zero);
+  Motion still;
+  still.mount = model.mount;
+  if (fitter.empty()) return guess != nullptr ? *guess : still;
+  const MotionVector start = motion_vector(guess != nullptr ? *guess : still);
+  MotionVector motion = fitter.straighten(model, start, guess == nullptr);
+  const double reach = guess != nullptr ? kMaxYawChange : kMaxYaw;
+  fitter.find_yaw(model.ticks_per_turn, &model, start[5], reach, motion);
+  return quantised_motion(fitter.refine(model, motion), zero_tick);
 }
 
 }  // namespace sweepcast

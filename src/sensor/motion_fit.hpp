@@ -1,4 +1,4 @@
-// The twist of a deskewed sweep, found from its points: undoing it makes the beams' lines straight
+// The motion of a deskewed sweep, found from its points: undoing it makes the beams' lines straight
 // again, and the azimuths whole ticks.
 #pragma once
 
@@ -10,56 +10,79 @@
 #include <vector>
 
 #include "sensor/beam_azimuth.hpp"
+#include "sensor/beam_geometry.hpp"
 #include "sensor/beam_lines.hpp"
 #include "sweepcast/sensor_model.hpp"
 
 namespace sweepcast {
 
+struct MotionPrior;
+
+/// Least squares of a beam's time offset, turns.
+struct TimeOffsetSums {
+  double square = 0.0, product = 0.0;
+};
+
 /// The fastest turn that is looked for, radians a turn: 80 degrees a second at 10 Hz.
 inline constexpr double kMaxYaw = 0.14;
 
-/// Translation, metres, then rotation, radians; of a whole turn.
-using TwistVector = std::array<double, 6>;
+/// A motion's numbers: translation, metres, and rotation, radians, of a whole turn; then the
+/// mount's; then the nod.
+using MotionVector = std::array<double, 13>;
+inline constexpr std::size_t kNod = 12;
 
-/// A sweep whose motion is looked for. `azimuth` clock, time 0 forward.
+/// A sweep whose motion is looked for.
 class MotionFitter {
  public:
-  /// Takes every `stride`-th point.
-  MotionFitter(const CloudView& cloud, std::size_t stride);
+  /// Takes every `stride`-th point. `zero`: the azimuth, in turns, where time is 0.
+  MotionFitter(const CloudView& cloud, std::size_t stride, double zero = 0.0);
 
   /// Whether no point is far enough from the sensor to tell anything.
   [[nodiscard]] bool empty() const { return points_.empty(); }
 
-  /// With nothing known: from the beams in front, where hardly any time has passed, outwards.
-  /// Returns the twist but for its turn about z, which heights do not show;
-  /// none where there are no beams.
-  [[nodiscard]] std::optional<TwistVector> bootstrap(int max_beams);
+  /// Where time is 0, turns; opposite to where the sweep begins and ends.
+  [[nodiscard]] double zero() const { return zero_; }
 
-  /// Straightens the lines again, from a twist that is nearly right; lines are found anew.
-  [[nodiscard]] std::optional<TwistVector> settle(int max_beams, TwistVector twist);
+  /// With nothing known: first the mount, then where the sweep begins and ends, and the twist, but
+  /// for the turns about z, which heights do not show. None where there are no beams.
+  [[nodiscard]] std::optional<MotionVector> bootstrap(int max_beams);
+
+  /// Straightens the lines again, from a motion that is nearly right; lines are found anew.
+  [[nodiscard]] std::optional<MotionVector> settle(int max_beams, MotionVector motion);
 
   /// The encoder's ticks, from the steps between neighbouring points of a beam, which the motion
   /// hardly changes; 0 where there are none. After `bootstrap`.
   [[nodiscard]] int find_ticks();
 
-  /// Adds to `twist` the turn about z at which the azimuths of each beam come back to whole ticks.
+  /// Sets the twist's turn about z at which the azimuths of each beam come back to whole ticks.
   /// Looks up to `reach` from `centre`, radians. Without a model lateral offsets are searched too.
-  /// After `bootstrap` or `straighten`.
+  /// After `bootstrap`, `settle` or `straighten`.
   void find_yaw(int ticks_per_turn, const SensorModel* model, double centre, double reach,
-                TwistVector& twist);
+                MotionVector& motion);
 
-  /// The twist but for its turn about z that straightens the lines of a model; from a guess, or
-  /// from the front outwards.
-  [[nodiscard]] TwistVector straighten(const SensorModel& model, const TwistVector* guess);
+  /// The motion but for its turns about z that straightens the lines of a model, from a guess;
+  /// `outwards`: which may be wrong all over, so from the front, where no time has passed.
+  [[nodiscard]] MotionVector straighten(const SensorModel& model, MotionVector guess,
+                                        bool outwards);
+
+  /// What the points of each beam say about its time offset. After `refine`.
+  void add_time_offsets(const SensorModel& model, const MotionVector& motion,
+                        std::span<TimeOffsetSums> sums) const;
 
   /// Gauss-Newton on heights and azimuths at once, with the beams of a model.
-  [[nodiscard]] TwistVector refine(const SensorModel& model, TwistVector twist);
+  [[nodiscard]] MotionVector refine(const SensorModel& model, MotionVector motion);
 
  private:
-  void undo(const TwistVector& twist);
+  void undo(const MotionVector& motion);
   void assign(std::span<const BeamLine> lines);
-  [[nodiscard]] TwistVector height_step(std::span<const BeamLine> lines, bool lines_free,
-                                        double reach, double scale, TwistVector twist);
+  [[nodiscard]] double height_error(std::size_t i) const;
+  [[nodiscard]] double aside(std::size_t i, const BeamGeometry& beam, int ticks_per_turn) const;
+  [[nodiscard]] MotionVector step_on_lines(double scale, const MotionVector& start,
+                                           const MotionVector& motion);
+  [[nodiscard]] MotionVector height_step(bool lines_free, double reach, double scale,
+                                         MotionPrior prior, const MotionVector& motion);
+  void relax(MotionVector& motion);
+  void find_cut(const MotionVector& motion);
 
   std::vector<std::array<float, 3>> points_;  // deskewed
   std::vector<std::array<double, 3>> own_;    // the sensor's own, by the last `undo`
@@ -67,13 +90,18 @@ class MotionFitter {
   std::vector<float> rho_, z_;
   std::vector<std::uint16_t> beam_;
   std::vector<BeamLine> lines_;
+  std::vector<double> gap_;           // by beam: tangent to the nearest other, of a model's
+  std::vector<double> time_offsets_;  // by beam, turns; empty where there are none
+  double zero_ = 0.0;
 };
 
-[[nodiscard]] Motion quantised_motion(const TwistVector& twist);
-[[nodiscard]] TwistVector twist_vector(const Motion& motion);
+/// `zero_tick`: where time is 0.
+[[nodiscard]] Motion quantised_motion(const MotionVector& motion, int zero_tick);
+[[nodiscard]] MotionVector motion_vector(const Motion& motion);
 
-/// The sensor's own points of a deskewed cloud. Without a model the time is that of the azimuth of
-/// the point itself; NaN and the origin stay.
-void undo_motion(const CloudView& cloud, const Motion& motion, PointCloud& own);
+/// The sensor's own points of a deskewed cloud. `zero`: where time is 0, turns. NaN and the origin
+/// stay. `model`: for the beams' time offsets; null: the time is that of the point's azimuth.
+void undo_motion(const CloudView& cloud, const MotionVector& motion, double zero,
+                 const SensorModel* model, PointCloud& own);
 
 }  // namespace sweepcast

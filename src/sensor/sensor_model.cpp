@@ -20,6 +20,15 @@ bool within(std::int32_t value, std::int32_t limit) {
   return value >= -limit && value <= limit;
 }
 
+bool is_sound(const Mount& mount) {
+  constexpr std::int32_t kMaxTranslation = 100 * kLengthUnits;
+  constexpr std::int32_t kMaxRotation = 90 * kAngleUnits;
+  bool sound = true;
+  for (const std::int32_t v : mount.translation) sound = sound && within(v, kMaxTranslation);
+  for (const std::int32_t w : mount.rotation) sound = sound && within(w, kMaxRotation);
+  return sound;
+}
+
 }  // namespace
 
 Status check(const SensorModel& model) {
@@ -37,6 +46,7 @@ Status check(const SensorModel& model) {
     return wrong("jitter of " + std::to_string(model.jitter) +
                  " ticks; at most half a turn and 4096 can be");
   }
+  if (!is_sound(model.mount)) return wrong("mount beyond 100 m or 90 degrees");
   for (std::size_t k = 0; k < model.beams.size(); ++k) {
     const Beam& beam = model.beams[k];
     const std::string name = "beam " + std::to_string(k);
@@ -48,6 +58,8 @@ Status check(const SensorModel& model) {
     if (!within(beam.azimuth_offset, kMaxAngle)) {
       return wrong(name + ": azimuth_offset beyond 360 degrees");
     }
+    if (!within(beam.time_offset, kMaxAngle))
+      return wrong(name + ": time_offset beyond 360 degrees");
     if (!within(beam.lag, model.ticks_per_turn)) return wrong(name + ": lag beyond a turn");
     if (k > 0 && beam.tan_elevation > model.beams[k - 1].tan_elevation) {
       return wrong(name + ": not below the one before; beams go from the highest down");
@@ -59,12 +71,15 @@ Status check(const SensorModel& model) {
 Status check(const Motion& motion, const SensorModel& model) {
   constexpr std::int32_t kMaxTranslation = 1000 * kLengthUnits;
   constexpr std::int32_t kMaxRotation = 90 * kAngleUnits;
-  bool sound = within(motion.zero_tick, model.ticks_per_turn);
+  bool sound = within(motion.zero_tick, model.ticks_per_turn) &&
+               within(motion.nod, kTangentUnits) && is_sound(motion.mount);
   for (const std::int32_t v : motion.translation) sound = sound && within(v, kMaxTranslation);
   for (const std::int32_t w : motion.rotation) sound = sound && within(w, kMaxRotation);
   if (sound) return {};
-  return fail(ErrorCode::invalid_argument,
-              "motion: beyond 1 km, 90 degrees or a turn's ticks; no robot moves so in a sweep");
+  return fail(
+      ErrorCode::invalid_argument,
+      "motion: beyond 1 km, 90 degrees or a turn's ticks, or its mount beyond 100 m; no robot "
+      "moves so in a sweep");
 }
 
 std::vector<BeamGeometry> beam_geometry(const SensorModel& model) {
@@ -81,6 +96,7 @@ std::vector<BeamGeometry> beam_geometry(const SensorModel& model) {
     g.phase = turns * model.ticks_per_turn;
     g.azimuth = 2.0 * kPi *
                 (turns + static_cast<double>(beam.lag) / static_cast<double>(model.ticks_per_turn));
+    g.time_turns = static_cast<double>(beam.time_offset) / (360.0 * kAngleUnits);
     beams.push_back(g);
   }
   return beams;

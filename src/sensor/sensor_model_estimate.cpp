@@ -8,7 +8,7 @@
 #include "sensor/beam_columns.hpp"
 #include "sensor/beam_geometry.hpp"
 #include "sensor/beam_lines.hpp"
-#include "sensor/motion_fit.hpp"
+#include "sensor/sensor_estimate.hpp"
 #include "sweepcast/sensor_model.hpp"
 
 namespace sweepcast {
@@ -245,7 +245,8 @@ int find_jitter(const BeamSamples& sweep, const SensorModel& model) {
   return best;
 }
 
-// The model of sweeps in the sensor's own frame.
+}  // namespace
+
 Result<SensorEstimate> estimate_still(std::span<const CloudView> sweeps, bool use_ring,
                                       const SensorEstimateOptions& options) {
   Samples samples;
@@ -276,58 +277,6 @@ Result<SensorEstimate> estimate_still(std::span<const CloudView> sweeps, bool us
   estimate.residuals = residuals_of(samples, estimate.model);
   return estimate;
 }
-
-// The same of deskewed sweeps: the twist of the first straightens the beams, those of the others
-// follow from the beams, and all sweeps undone give the model.
-Result<SensorEstimate> estimate_deskewed(std::span<const CloudView> sweeps,
-                                         SensorEstimateOptions options) {
-  MotionFitter fitter(sweeps.front(), 1);
-  const auto straightened = fitter.bootstrap(options.max_beams);
-  if (!straightened) {
-    return fail(ErrorCode::unsupported, "no beams of a spinning LiDAR in these points");
-  }
-  TwistVector twist = *straightened;
-  if (options.ticks_per_turn == 0) options.ticks_per_turn = fitter.find_ticks();
-  if (options.ticks_per_turn != 0) {
-    // The lines were straightened without the turn about z; once it is known, better.
-    fitter.find_yaw(options.ticks_per_turn, nullptr, 0.0, kMaxYaw, twist);
-    for (int round = 0; round < 2; ++round) {
-      const auto settled = fitter.settle(options.max_beams, twist);
-      if (!settled) break;
-      twist = *settled;
-      fitter.find_yaw(options.ticks_per_turn, nullptr, twist[5], 0.01, twist);
-    }
-  }
-  std::vector<Motion> motions{quantised_motion(twist)};
-  std::vector<PointCloud> own(sweeps.size());
-  undo_motion(sweeps.front(), motions.front(), own.front());
-  std::vector<CloudView> views{own.front()};
-  auto estimate = estimate_still(views, false, options);
-  if (!estimate) return estimate;
-  motions.clear();
-  views.clear();
-  for (std::size_t n = 0; n < sweeps.size(); ++n) {
-    const Motion guess = n == 0 ? quantised_motion(twist) : motions.back();
-    motions.push_back(estimate_motion(sweeps[n], estimate->model, &guess));
-    undo_motion(sweeps[n], motions[n], own[n]);
-    views.emplace_back(own[n]);
-  }
-  estimate = estimate_still(views, false, options);
-  if (estimate) estimate->motions = std::move(motions);
-  return estimate;
-}
-
-// The motion of every sweep, those that were passed over too, by the final model.
-void fill_motions(std::span<const CloudView> sweeps, SensorEstimate& estimate) {
-  Motion guess = estimate.motions.front();
-  estimate.motions.clear();
-  for (const CloudView& sweep : sweeps) {
-    guess = estimate_motion(sweep, estimate.model, &guess);
-    estimate.motions.push_back(guess);
-  }
-}
-
-}  // namespace
 
 Result<SensorEstimate> estimate_sensor_model(std::span<const CloudView> sweeps,
                                              const SensorEstimateOptions& options) {

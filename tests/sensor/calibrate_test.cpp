@@ -35,9 +35,11 @@ TEST_F(SensorFile, GivesTheIntegersBack) {
   SensorModel model = test::made_up_model();
   model.direction = -1;
   model.jitter = 7;
+  model.mount = {{-3'001, 61'002, -187'003}, {-900'001, 150'002, 90'000'000}};
   for (Beam& beam : model.beams) {
     beam.height = test::uniform_int(random, -1'000'000, 1'000'000);
     beam.azimuth_offset = test::uniform_int(random, -360'000'000, 360'000'000);
+    beam.time_offset = test::uniform_int(random, -360'000'000, 360'000'000);
     beam.tan_elevation += test::uniform_int(random, 0, 1000);
   }
   const auto back = load(sensor_json(model).dump(1));

@@ -13,14 +13,6 @@ namespace {
 constexpr std::uint64_t kMostPoints = std::uint64_t{1} << 24;
 constexpr std::int32_t kLargestStep = 1 << 20;
 
-Motion read_motion(ByteReader& in) {
-  Motion motion;
-  for (std::int32_t& v : motion.translation) v = static_cast<std::int32_t>(in.get_signed());
-  for (std::int32_t& v : motion.rotation) v = static_cast<std::int32_t>(in.get_signed());
-  motion.zero_tick = static_cast<std::int32_t>(in.get_varint(kMaxTicks));
-  return motion;
-}
-
 }  // namespace
 
 std::string_view part_name(std::uint8_t kind) noexcept {

@@ -9,6 +9,7 @@
 #include "core/crc32.hpp"
 #include "sensor/beam_geometry.hpp"
 #include "sensor/crop.hpp"
+#include "sensor/motion.hpp"
 
 namespace sweepcast::beam {
 namespace {
@@ -43,12 +44,6 @@ std::int32_t range_step(const BeamOptions& options) {
 // The step of the extras' lattice, 0.1 mm.
 std::int32_t extras_step(const BeamOptions& options) {
   return std::max(1, static_cast<std::int32_t>(options.max_error_m / kHalfDiagonal * kRangeUnits));
-}
-
-void write_motion(const Motion& motion, ByteWriter& out) {
-  for (const std::int32_t v : motion.translation) out.put_signed(v);
-  for (const std::int32_t v : motion.rotation) out.put_signed(v);
-  out.put_varint(as_unsigned(motion.zero_tick));
 }
 
 }  // namespace
@@ -165,16 +160,24 @@ void Encoder::keep_bound() {
   const double along = 0.5 * range_step(options_) / kRangeUnits;
   // A hundredth is kept back: a deskewed point's beam is a little off the direction taken below.
   const double bound = 0.99 * options_.max_error_m * options_.max_error_m;
+  const bool mounted = mount_of(*model_, image_.motion) != Mount{};
+  const Twist<double> mount(mount_of(*model_, image_.motion));
   std::size_t at = 0;
   for (std::size_t cell = 0; cell < image_.cells(); ++cell) {
     if (image_.range[cell] == 0) continue;
     const std::uint32_t point = image_.point[cell];
-    const double px = placed_.x[at];
-    const double py = placed_.y[at];
-    const double dx = px - double{x_[point]};
-    const double dy = py - double{y_[point]};
-    const double dz = double{placed_.z[at]} - double{z_[point]};
+    std::array<double, 3> placed{placed_.x[at], placed_.y[at], placed_.z[at]};
+    std::array<double, 3> wanted{x_[point], y_[point], z_[point]};
     ++at;
+    if (mounted) {  // beams are straight lines from the sensor's own place
+      placed = mount.undo(placed, 1.0);
+      wanted = mount.undo(wanted, 1.0);
+    }
+    const double px = placed[0];
+    const double py = placed[1];
+    const double dx = px - wanted[0];
+    const double dy = py - wanted[1];
+    const double dz = placed[2] - wanted[2];
     // The rounding moves the point along its beam by up to half a step, either way.
     const BeamGeometry& beam = beams[cell / static_cast<std::size_t>(image_.cols)];
     const double rho = std::sqrt(px * px + py * py);

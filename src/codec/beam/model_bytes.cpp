@@ -8,8 +8,8 @@
 namespace sweepcast::beam {
 namespace {
 
-constexpr std::array kNumbers = {&Beam::tan_elevation, &Beam::height, &Beam::azimuth_offset,
-                                 &Beam::lateral_offset, &Beam::lag};
+constexpr std::array kNumbers = {&Beam::tan_elevation,  &Beam::height, &Beam::azimuth_offset,
+                                 &Beam::lateral_offset, &Beam::lag,    &Beam::time_offset};
 
 // Steps between firings, less one: in unary while small, then by plain bits.
 class StepCoder {
@@ -45,12 +45,23 @@ class StepCoder {
   std::uint32_t history_ = 0;  // of the last 16 steps
 };
 
+void write_mount(const Mount& mount, ByteWriter& out) {
+  for (const std::int32_t v : mount.translation) out.put_signed(v);
+  for (const std::int32_t v : mount.rotation) out.put_signed(v);
+}
+
+void read_mount(ByteReader& in, Mount& mount) {
+  for (std::int32_t& v : mount.translation) v = static_cast<std::int32_t>(in.get_signed());
+  for (std::int32_t& v : mount.rotation) v = static_cast<std::int32_t>(in.get_signed());
+}
+
 }  // namespace
 
 void write_model(const SensorModel& model, ByteWriter& out) {
   out.put_varint(static_cast<std::uint64_t>(model.ticks_per_turn));
   out.put_signed(model.direction);
   out.put_varint(static_cast<std::uint64_t>(model.jitter));
+  write_mount(model.mount, out);
   out.put_varint(model.beams.size());
   for (const auto number : kNumbers) {
     std::int64_t last = 0;
@@ -65,6 +76,7 @@ bool read_model(ByteReader& in, SensorModel& model) {
   model.ticks_per_turn = static_cast<std::int32_t>(in.get_varint(kMaxTicks));
   model.direction = static_cast<std::int32_t>(in.get_signed());
   model.jitter = static_cast<std::int32_t>(in.get_varint(kMaxTicks));
+  read_mount(in, model.mount);
   model.beams.resize(in.get_varint(kMaxBeams));
   for (const auto number : kNumbers) {
     std::int64_t last = 0;
@@ -77,6 +89,24 @@ bool read_model(ByteReader& in, SensorModel& model) {
     }
   }
   return in.ok() && check(model).has_value();
+}
+
+void write_motion(const Motion& motion, ByteWriter& out) {
+  for (const std::int32_t v : motion.translation) out.put_signed(v);
+  for (const std::int32_t v : motion.rotation) out.put_signed(v);
+  out.put_varint(static_cast<std::uint64_t>(motion.zero_tick));
+  out.put_signed(motion.nod);
+  write_mount(motion.mount, out);
+}
+
+Motion read_motion(ByteReader& in) {
+  Motion motion;
+  for (std::int32_t& v : motion.translation) v = static_cast<std::int32_t>(in.get_signed());
+  for (std::int32_t& v : motion.rotation) v = static_cast<std::int32_t>(in.get_signed());
+  motion.zero_tick = static_cast<std::int32_t>(in.get_varint(kMaxTicks));
+  motion.nod = static_cast<std::int32_t>(in.get_signed());
+  read_mount(in, motion.mount);
+  return motion;
 }
 
 void write_firings(const std::vector<std::int32_t>& ticks, std::vector<std::byte>& out) {

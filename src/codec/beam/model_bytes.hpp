@@ -15,6 +15,12 @@ void write_model(const SensorModel& model, ByteWriter& out);
 /// The inverse; false where the bytes end early or the model does not pass `check`.
 [[nodiscard]] bool read_model(ByteReader& in, SensorModel& model);
 
+/// Writes a motion that has passed `check`, its `zero_tick` not negative.
+void write_motion(const Motion& motion, ByteWriter& out);
+
+/// The inverse; what it gives has yet to pass `check`.
+[[nodiscard]] Motion read_motion(ByteReader& in);
+
 /// Writes increasing ticks. They are nearly periodic: what the decoder has seen follow the last
 /// few steps is packed well.
 void write_firings(const std::vector<std::int32_t>& ticks, std::vector<std::byte>& out);

@@ -13,8 +13,17 @@ namespace {
 using test::random_bits;
 using test::uniform_int;
 
+Mount random_mount(std::mt19937& random) {
+  Mount mount;
+  for (auto& v : mount.translation)
+    v = uniform_int(random, -100 * kLengthUnits, 100 * kLengthUnits);
+  for (auto& v : mount.rotation) v = uniform_int(random, -90 * kAngleUnits, 90 * kAngleUnits);
+  return mount;
+}
+
 SensorModel random_model(std::mt19937& random) {
   SensorModel model;
+  model.mount = random_mount(random);
   model.ticks_per_turn = uniform_int(random, 1, kMaxTicks);
   model.direction = uniform_int(random, -1, 1);
   model.jitter = uniform_int(random, 0, std::min(3, model.ticks_per_turn));
@@ -26,6 +35,7 @@ SensorModel random_model(std::mt19937& random) {
     beam.azimuth_offset = uniform_int(random, -360, 359) * kAngleUnits + uniform_int(random, 0, 9);
     beam.lateral_offset = uniform_int(random, -10 * kLengthUnits, 10 * kLengthUnits);
     beam.lag = uniform_int(random, -model.ticks_per_turn, model.ticks_per_turn);
+    beam.time_offset = uniform_int(random, -360 * kAngleUnits, 360 * kAngleUnits);
     model.beams.push_back(beam);
   }
   std::sort(model.beams.begin(), model.beams.end(),
@@ -50,6 +60,24 @@ TEST(ModelBytes, ModelsComeBack) {
     SensorModel back;
     ASSERT_TRUE(read_model(in, back));
     EXPECT_EQ(back, model);
+    EXPECT_TRUE(in.at_end());
+  }
+}
+
+TEST(ModelBytes, MotionsComeBack) {
+  std::mt19937 random(6);
+  for (int i = 0; i < 100; ++i) {
+    Motion motion;
+    for (auto& v : motion.translation) v = uniform_int(random, -100'000'000, 100'000'000);
+    for (auto& v : motion.rotation) v = uniform_int(random, -90'000'000, 90'000'000);
+    motion.zero_tick = uniform_int(random, 0, kMaxTicks);
+    motion.mount = random_mount(random);
+    motion.nod = uniform_int(random, -kTangentUnits, kTangentUnits);
+    std::vector<std::byte> bytes;
+    ByteWriter out(bytes);
+    write_motion(motion, out);
+    ByteReader in(bytes);
+    EXPECT_EQ(read_motion(in), motion);
     EXPECT_TRUE(in.at_end());
   }
 }
@@ -89,7 +117,7 @@ TEST(ModelBytes, DamagedModelsAreRefusedOrStillWithinTheirBounds) {
 }
 
 TEST(ModelBytes, NumbersBeyondTheirBoundsAreRefused) {
-  const SensorModel sound{2000, 1, 0, {{100, 0, 0, 0, 0}, {50, 0, 0, 0, 0}}};
+  const SensorModel sound{2000, 1, 0, {{100, 0, 0, 0, 0, 0}, {50, 0, 0, 0, 0, 0}}, {}};
   ASSERT_TRUE(check(sound).has_value());
   const auto is_refused = [&](auto change) {
     SensorModel model = sound;
@@ -108,6 +136,9 @@ TEST(ModelBytes, NumbersBeyondTheirBoundsAreRefused) {
   EXPECT_TRUE(is_refused([](SensorModel& m) { m.beams[0].tan_elevation = 101 * kTangentUnits; }));
   EXPECT_TRUE(is_refused([](SensorModel& m) { m.beams[1].height = 11 * kLengthUnits; }));
   EXPECT_TRUE(is_refused([](SensorModel& m) { m.beams[1].lag = 2001; }));
+  EXPECT_TRUE(is_refused([](SensorModel& m) { m.beams[1].time_offset = 361 * kAngleUnits; }));
+  EXPECT_TRUE(is_refused([](SensorModel& m) { m.mount.translation[2] = -101 * kLengthUnits; }));
+  EXPECT_TRUE(is_refused([](SensorModel& m) { m.mount.rotation[0] = 91 * kAngleUnits; }));
 }
 
 std::vector<std::int32_t> back_of(const std::vector<std::byte>& bytes, std::size_t count,
