@@ -1,4 +1,4 @@
-# Tests of src/core, src/sensor and src/codec.
+# Tests of src/core, src/sensor, src/rate and src/codec.
 sweepcast_test(core/bytes)
 sweepcast_test(core/cloud)
 sweepcast_test(core/crc32)
@@ -10,6 +10,8 @@ sweepcast_test(sensor/sensor_model)
 if(SWEEPCAST_APPS)
   sweepcast_test(sensor/calibrate sweepcast_app)
 endif()
+sweepcast_test(rate/beam_quality)
+sweepcast_test(rate/byte_budget)
 sweepcast_test(codec/entropy/range_coder)
 sweepcast_test(codec/entropy/mixer)
 sweepcast_test(codec/entropy/zstd_coder)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 namespace sweepcast {
 
@@ -23,6 +24,27 @@ inline constexpr std::array<RcpccParams, 6> kRcpccLevels{{
     {1.0, 0.5, 0.1, 0.2},
     {1.0, 0.5, 0.2, 0.2},
     {2.0, 1.0, 0.4, 0.2},
+}};
+
+/// How codec `beam` codes a sweep's five layers, coarsest first.
+struct BeamQuality {
+  static constexpr std::size_t kLayers = 5;
+  /// Steps of ranges, metres: points that are kept decode within half of it along their beam.
+  std::array<double, kLayers> step_m{};
+  /// Points that interpolation gets as near as this may be left out, metres; 0: every point is
+  /// kept. The first layer is always kept.
+  std::array<double, kLayers> tolerance_m{};
+};
+
+/// Levels 0 (finest) to 5. 0 and 1 keep every point, within 2 and 5 cm; from 2 on points are left
+/// out which `DecoderOptions::fill` interpolates. docs/benchmarks.md has what each gives.
+inline constexpr std::array<BeamQuality, 6> kBeamLevels{{
+    {{0.04, 0.04, 0.04, 0.04, 0.04}, {}},
+    {{0.1, 0.1, 0.1, 0.1, 0.1}, {}},
+    {{0.09, 0.09, 0.09, 0.09, 0.18}, {0, 0, 0, 0, 0.7}},
+    {{0.1, 0.1, 0.12, 0.2, 0.2}, {0, 0, 0, 1.0, 1000}},
+    {{0.12, 0.14, 0.2, 0.2, 0.2}, {0, 0, 0.2, 12, 1000}},
+    {{0.12, 0.24, 0.24, 0.24, 0.24}, {0, 0.4, 8, 1000, 1000}},
 }};
 
 }  // namespace sweepcast

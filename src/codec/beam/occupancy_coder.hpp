@@ -84,7 +84,7 @@ class OccupancyCoder {
   // 0 unknown, 1 empty, 2 holds a point.
   static std::uint8_t known(CellState state) {
     const auto value = static_cast<unsigned>(state);
-    return static_cast<std::uint8_t>(value - (value & (value >> 1)));
+    return static_cast<std::uint8_t>((value & 2U) | (value & ~(value >> 1) & 1U));
   }
 
   // What two of a, b and n say, else n, else a side that is known. In masks, not choices, so that

@@ -10,10 +10,11 @@ namespace sweepcast::beam {
 
 /// What is known of a cell.
 enum class CellState : std::uint8_t {
-  unknown,   ///< not yet coded
-  empty,     ///< no point
-  measured,  ///< holds a point
-  filled,    ///< left out at the encoder's wish: the range is what interpolation gives
+  unknown,      ///< not yet coded
+  empty,        ///< no point
+  measured,     ///< holds a point
+  filled,       ///< left out at the encoder's wish: the range is what interpolation gives
+  assumed = 6,  ///< left out beside a jump in depth: a range for the neighbours' sake, no point
 };
 
 inline constexpr std::int32_t kNearest = 2'000;        ///< shortest range, 0.1 mm: 0.2 m

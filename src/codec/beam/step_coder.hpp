@@ -123,7 +123,7 @@ class StepCoder {
     return difference < 0 ? -size : size;
   }
 
-  // Whether a group is left out. Its cells are then filled where both sides are about as far away.
+  // Whether a group is left out. Its cells then get the ranges of `fill_of`.
   template <class Coder>
   bool skip_group(Coder& coder, const Run& run, std::size_t first, std::size_t last,
                   const std::int32_t* truth) {
@@ -142,13 +142,31 @@ class StepCoder {
     const bool skip = skip_.code(coder, contexts, std::min(gaps, 7U), near);
     skipped_ = skipped_ * 2U + (skip ? 1U : 0U);
     for (std::size_t i = first; skip && i < last; ++i) {
-      const bool fills = predictions_.basis[i] == static_cast<std::int32_t>(Basis::between);
-      run.states.cell[i] = fills ? CellState::filled : CellState::empty;
-      if (!fills) continue;
-      run.range[i] = std::clamp(predictions_.range[i], kNearest, kFarthest);
+      const std::int32_t fill = fill_of(run, i);
+      // Only between two sides is a range sure enough to be shown.
+      const bool sure = predictions_.basis[i] == static_cast<std::int32_t>(Basis::between);
+      const CellState full = sure ? CellState::filled : CellState::assumed;
+      run.states.cell[i] = fill == 0 ? CellState::empty : full;
+      if (fill == 0) continue;
+      run.range[i] = std::clamp(fill, kNearest, kFarthest);
       run.activity[i] = 1;
     }
     return skip;
+  }
+
+  // The range that a cell gets where its group is left out, 0 for none: a cell must still have the
+  // state that was guessed for it.
+  [[nodiscard]] std::int32_t fill_of(const Run& run, std::size_t i) const {
+    if (run.states.cell[i] == CellState::empty) return 0;
+    const auto at = [&](Neighbours::Place place) { return run.neighbours.range[place][i]; };
+    const auto basis = static_cast<Basis>(predictions_.basis[i]);
+    if (basis == Basis::between || basis == Basis::one) return predictions_.range[i];
+    if (basis != Basis::gap) return 0;
+    const std::int32_t n = at(Neighbours::n);
+    const std::int32_t a = at(Neighbours::a);
+    const std::int32_t b = at(Neighbours::b);
+    if (n == 0) return std::min(a, b);
+    return std::abs(n - a) < std::abs(n - b) ? a : b;
   }
 
   // Whether a point is not missed where its cell is left out.
@@ -157,9 +175,9 @@ class StepCoder {
     const auto within = [&](std::int32_t other) {
       return other > 0 && std::abs(range - other) <= tolerance_;
     };
-    if (predictions_.basis[i] == static_cast<std::int32_t>(Basis::between)) {
-      return within(predictions_.range[i]);
-    }
+    const std::int32_t fill = fill_of(run, i);
+    const bool sure = predictions_.basis[i] == static_cast<std::int32_t>(Basis::between);
+    if (within(fill) || (sure && fill > 0)) return within(fill);
     return within(run.neighbours.range[Neighbours::a][i]) ||
            within(run.neighbours.range[Neighbours::b][i]);
   }
