@@ -107,6 +107,19 @@ void add_quality(CLI::App& app, EncoderOptions& options) {
       ->excludes(params);
 }
 
+void add_fields(CLI::App& app, BeamOptions& beam) {
+  add_choice<Fields>(
+      app, "--fields", beam.fields,
+      {{"xyz", Fields::xyz}, {"xyzi", Fields::xyzi}, {"all", Fields::all}},
+      "Codec beam: which fields are kept: coordinates, intensity, ring and time [all]");
+  app.add_option("--intensity-step", beam.intensity_step,
+                 "Codec beam: round intensities to multiples of this; 0: keep them exactly [0]")
+      ->type_name("STEP");
+  app.add_flag("--keep-order", beam.keep_order,
+               "Codec beam: points come back in the order of the input, not firing by firing");
+  app.add_flag("--lossless", beam.lossless, "Codec beam: coordinates come back to the bit");
+}
+
 void add_view(CLI::App& app, RcpccOptions& rcpcc) {
   add_numbers<2>(app, "--fov-elevation", "MIN,MAX", "Field of view in degrees [-90,90]",
                  [&rcpcc](const std::array<double, 2>& v) {
@@ -132,6 +145,7 @@ void add_codec_options(CLI::App& app, EncoderOptions& options) {
                       {{"rcpcc", CodecId::rcpcc}, {"beam", CodecId::beam}},
                       "How sweeps are coded [rcpcc]");
   add_quality(app, options);
+  add_fields(app, options.beam);
   app.add_option("--block", rcpcc.block_size,
                  fmt::format("Side of a macroblock in cells [{}]", rcpcc.block_size))
       ->check(CLI::IsMember({4, 8, 16}).description(""))
@@ -186,7 +200,10 @@ void require_matching(const CLI::App& app, const EncoderOptions& options) {
                                                    codec, codec));
   };
   if (options.codec == CodecId::rcpcc) {
-    refuse("--max-error", name(CodecId::beam));
+    for (const char* option :
+         {"--max-error", "--fields", "--intensity-step", "--keep-order", "--lossless"}) {
+      refuse(option, name(CodecId::beam));
+    }
     return;
   }
   for (const char* option :

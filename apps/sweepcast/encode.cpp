@@ -105,7 +105,7 @@ void report_json(const std::vector<Encoded>& frames, std::uint64_t file_bytes) {
 }
 
 void report_text(const fs::path& output, const std::vector<Encoded>& frames,
-                 std::uint64_t file_bytes) {
+                 std::uint64_t file_bytes, bool geometry_only) {
   CountSums sums;
   std::uint64_t bytes = 0;
   double milliseconds = 0.0;
@@ -118,8 +118,9 @@ void report_text(const fs::path& output, const std::vector<Encoded>& frames,
   fmt::print("{}: {}, {} in, {} coded\n", output.string(), count_of(frames.size(), "frame"),
              count_of(sums.points_in(), "point"), sums.points_coded());
   fmt::print("  not coded: {}\n", sums.losses());
-  fmt::print("  {} bytes in frames, {} in the file; ratio {:.1f} (16 B/point, geometry only)\n",
-             bytes, file_bytes, ratio(sums.points_in(), bytes));
+  fmt::print("  {} bytes in frames, {} in the file; ratio {:.1f} (16 B/point, geometry {})\n",
+             bytes, file_bytes, ratio(sums.points_in(), bytes),
+             geometry_only ? "only" : "and what attributes there are");
   fmt::print("  {:.1f} ms of CPU time a frame\n", milliseconds / count);
 }
 
@@ -152,7 +153,10 @@ Status encode(const EncodeOptions& options) {
   if (options.json) {
     report_json(frames, writer->size());
   } else {
-    report_text(options.output, frames, writer->size());
+    const EncoderOptions& encoder_options = options.encoder;
+    const bool geometry_only =
+        encoder_options.codec == CodecId::rcpcc || encoder_options.beam.fields == Fields::xyz;
+    report_text(options.output, frames, writer->size(), geometry_only);
   }
   return {};
 }

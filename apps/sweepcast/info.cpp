@@ -85,9 +85,11 @@ void report_text(const InfoOptions& options, const SweepReader& reader, const Su
   fmt::print("  codec {}, sensor {}\n", list(summary.codecs), list(summary.sensors));
   fmt::print("  {} points in, {} coded; not coded: {}\n", summary.counts.points_in(),
              summary.counts.points_coded(), summary.counts.losses());
-  fmt::print("  {:.0f} bytes a frame; ratio {:.1f} (16 B/point, geometry only)\n",
+  const bool attributes = summary.part_bytes.count("attributes") > 0;
+  fmt::print("  {:.0f} bytes a frame; ratio {:.1f} (16 B/point, geometry {})\n",
              static_cast<double>(summary.frame_bytes) / count,
-             ratio(summary.counts.points_in(), summary.frame_bytes));
+             ratio(summary.counts.points_in(), summary.frame_bytes),
+             attributes ? "and attributes" : "only");
   for (const auto& [part, bytes] : summary.part_bytes) {
     fmt::print("  {:<12} {:>10} bytes  {:5.1f} %\n", part, bytes,
                100.0 * static_cast<double>(bytes) / static_cast<double>(summary.frame_bytes));

@@ -81,6 +81,12 @@ Status check_counts(const SweepCounts& counts, std::size_t original, std::size_t
               fmt::format("announces {} points and decodes to {}", counts.points_coded, decoded));
 }
 
+/// Points with coordinates: organised clouds have slots without.
+std::size_t count_points(const PointCloud& cloud) {
+  return cloud.size() - static_cast<std::size_t>(std::count_if(
+                            cloud.x.begin(), cloud.x.end(), [](float x) { return std::isnan(x); }));
+}
+
 Result<Verified> verify_one(SweepReader& reader, std::size_t i, Workspace& work) {
   Status status = reader.read(i, work.frame);
   if (status) status = work.decoder.decode(work.frame, work.decoded);
@@ -95,7 +101,8 @@ Result<Verified> verify_one(SweepReader& reader, std::size_t i, Workspace& work)
                                                   *name));
   }
   status = read_cloud(original->second, work.original);
-  if (status) status = check_counts(header.counts, work.original.size(), work.decoded.size());
+  if (status)
+    status = check_counts(header.counts, work.original.size(), count_points(work.decoded));
   if (!status) return tl::unexpected(status.error());
   return Verified{*name, header.counts, lab::compare(work.original, work.decoded)};
 }

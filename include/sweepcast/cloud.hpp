@@ -16,6 +16,9 @@ struct PointCloud {
   std::vector<float> intensity;       ///< the sensor's own unit; optional
   std::vector<std::uint16_t> ring;    ///< the beam's number, 0 the first; optional
   std::vector<std::int64_t> time_ns;  ///< nanoseconds since the sweep's first firing; optional
+  /// Points in a row of an organised cloud, which is stored row after row, its size a multiple of
+  /// it; 0: not organised. Slots without a point have NaN coordinates.
+  std::uint32_t width = 0;
 
   [[nodiscard]] std::size_t size() const noexcept { return x.size(); }
   [[nodiscard]] bool empty() const noexcept { return x.empty(); }
@@ -62,9 +65,10 @@ struct FieldLayout {
 struct CloudView {
   std::size_t size = 0;
   FieldView x, y, z;
-  FieldView intensity;  ///< optional
-  FieldView ring;       ///< optional
-  FieldView time_ns;    ///< optional; nanoseconds after scaling
+  FieldView intensity;      ///< optional
+  FieldView ring;           ///< optional
+  FieldView time_ns;        ///< optional; nanoseconds after scaling
+  std::uint32_t width = 0;  ///< points in a row of an organised cloud, else 0
 
   CloudView() = default;
   /// Columns: a `PointCloud`.

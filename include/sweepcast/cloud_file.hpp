@@ -33,7 +33,8 @@ enum class CloudEncoding : std::uint8_t { ascii, binary, binary_compressed };
 /// scalar_Intensity); ring (also channel, laser_id); time (also t, timestamp, time_stamp,
 /// time_offset): floating point counts as seconds, integers as nanoseconds. Times are made relative
 /// to the smallest one, so that the first firing is 0. Other fields are skipped. In a .bin file the
-/// fourth column is intensity. Coordinates that are NaN or infinite stay so.
+/// fourth column is intensity. Coordinates that are NaN or infinite stay so. A PCD of more than one
+/// row (HEIGHT) is an organised cloud, and an organised cloud is written as one to PCD.
 ///
 /// Errors: not_found, io, corrupt (with the line or byte at fault), truncated, unsupported
 /// (extension, content of another kind, as text or random bytes in a .bin, no x y z), limit (over

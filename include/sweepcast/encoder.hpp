@@ -76,11 +76,27 @@ enum class Effort : std::uint8_t {
   best,    ///< more of them
 };
 
+/// Which of a cloud's fields are coded.
+enum class Fields : std::uint8_t {
+  xyz,
+  xyzi,  ///< and intensity
+  all,   ///< and ring and time
+};
+
 /// Options of codec `beam`.
 struct BeamOptions {
   double max_error_m = 0.05;  ///< no point decodes farther from its place, metres, 0.001 to 2
   Effort effort = Effort::normal;
-  int model_interval = 10;    ///< every how many frames the sensor's model is sent, at least 1
+  int model_interval = 10;      ///< every how many frames the sensor's model is sent, at least 1
+  Fields fields = Fields::all;  ///< of those that the cloud has; the optional ones are exact
+  /// Intensities are rounded to its multiples, in the sensor's unit; 0: they are exact.
+  double intensity_step = 0.0;
+  /// Points come back in the cloud's order; organised clouds organised, points that are not coded
+  /// as NaN in their slots. Else points come firing by firing, and those not coded are left out.
+  bool keep_order = false;
+  /// Coordinates and attributes come back to the bit; `max_error_m` and `intensity_step` then count
+  /// for nothing. Points that are not coded, and the order, are as without.
+  bool lossless = false;
 };
 
 /// Options of an encoder.

@@ -17,17 +17,15 @@ struct Decoder::State {
 
   Status decode(std::span<const std::byte> frame, PointCloud& cloud) {
     if (Status status = parse_frame_header(frame, header); !status) return status;
-    if (header.counts.points_coded > options.max_points) {
+    const SweepCounts& counts = header.counts;
+    const bool keeps_slots = header.codec == CodecId::beam &&
+                             has_part(header, static_cast<std::uint8_t>(beam::Part::order));
+    const std::size_t most = keeps_slots ? counts.points_in : counts.points_coded;
+    if (most > options.max_points) {
       return fail(ErrorCode::limit, "the frame holds more points than the decoder may give");
     }
     if (header.codec == CodecId::beam) {
-      if (Status status = beam.decode(frame, header, options.max_layers, cloud); !status) {
-        return status;
-      }
-      if (cloud.size() > header.counts.points_coded) {
-        return fail(ErrorCode::corrupt, "the frame holds more points than its head announces");
-      }
-      return {};
+      return beam.decode(frame, header, options.max_layers, cloud);
     }
     if (header.frame_size > frame.size()) {
       return fail(ErrorCode::truncated, "the frame is cut short");

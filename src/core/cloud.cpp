@@ -29,6 +29,7 @@ void PointCloud::clear() noexcept {
   intensity.clear();
   ring.clear();
   time_ns.clear();
+  width = 0;
 }
 
 void PointCloud::resize_xyz(std::size_t count) {
@@ -103,7 +104,8 @@ CloudView::CloudView(const PointCloud& cloud) noexcept
       z(column(std::span<const float>(cloud.z))),
       intensity(column(cloud.intensity, ScalarType::f32)),
       ring(column(cloud.ring, ScalarType::u16)),
-      time_ns(column(cloud.time_ns, ScalarType::i64)) {}
+      time_ns(column(cloud.time_ns, ScalarType::i64)),
+      width(cloud.width) {}
 
 CloudView CloudView::columns(std::span<const float> x, std::span<const float> y,
                              std::span<const float> z) noexcept {

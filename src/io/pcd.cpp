@@ -16,6 +16,7 @@ namespace {
 struct PcdHeader {
   std::vector<RecordField> fields;
   std::uint64_t points = 0;
+  std::uint32_t width = 0;  ///< of an organised cloud, else 0
   CloudEncoding encoding = CloudEncoding::ascii;
   std::size_t size = 0;   ///< bytes of the header
   std::size_t lines = 0;  ///< lines of the header
@@ -101,7 +102,10 @@ Status resolve_points(const PcdEntries& entries, PcdHeader& header) {
                 "announces more than " + std::to_string(kMaxPoints) + " points; split the cloud");
   }
   header.points = entries.points.value_or(width * height);
-  if (!entries.width || header.points == width * height) return {};
+  if (!entries.width || header.points == width * height) {
+    if (height > 1) header.width = static_cast<std::uint32_t>(width);
+    return {};
+  }
   return fail(ErrorCode::corrupt, "the header announces " + std::to_string(width) + " x " +
                                       std::to_string(height) + " points, and " +
                                       std::to_string(header.points) +
@@ -207,9 +211,12 @@ void write_header(const PointCloud& cloud, const std::vector<RecordField>& field
     counts += " 1";
   }
   const std::string points = std::to_string(cloud.size());
+  const bool organised = cloud.width > 0 && cloud.size() % cloud.width == 0;
+  const std::string width = organised ? std::to_string(cloud.width) : points;
+  const std::string height = organised ? std::to_string(cloud.size() / cloud.width) : "1";
   append_text("# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS" + names + "\nSIZE" +
-                  sizes + "\nTYPE" + types + "\nCOUNT" + counts + "\nWIDTH " + points +
-                  "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + points + "\nDATA ",
+                  sizes + "\nTYPE" + types + "\nCOUNT" + counts + "\nWIDTH " + width + "\nHEIGHT " +
+                  height + "\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + points + "\nDATA ",
               out);
   append_text(data, out);
   append_text("\n", out);
@@ -233,12 +240,7 @@ void write_compressed(const PointCloud& cloud, const std::vector<RecordField>& f
   writer.put_bytes(compressed);
 }
 
-}  // namespace
-
-Status parse_pcd(std::span<const std::byte> bytes, PointCloud& cloud) {
-  if (bytes.empty()) return fail(ErrorCode::truncated, "is empty; copy or record it again");
-  PcdHeader header;
-  if (Status status = parse_header(bytes, header); !status) return status;
+Status parse_points(std::span<const std::byte> bytes, const PcdHeader& header, PointCloud& cloud) {
   const auto data = bytes.subspan(header.size);
   if (header.encoding == CloudEncoding::ascii) {
     NumberReader reader(data, NumberCoding::text, header.lines);
@@ -255,6 +257,17 @@ Status parse_pcd(std::span<const std::byte> bytes, PointCloud& cloud) {
   if (Status status = expand(data, size, columns); !status) return status;
   NumberReader reader(columns, NumberCoding::little_endian);
   return read_columns(reader, header.fields, header.points, cloud);
+}
+
+}  // namespace
+
+Status parse_pcd(std::span<const std::byte> bytes, PointCloud& cloud) {
+  if (bytes.empty()) return fail(ErrorCode::truncated, "is empty; copy or record it again");
+  PcdHeader header;
+  if (Status status = parse_header(bytes, header); !status) return status;
+  Status status = parse_points(bytes, header, cloud);
+  cloud.width = status ? header.width : 0;
+  return status;
 }
 
 void serialize_pcd(const PointCloud& cloud, CloudEncoding encoding, std::vector<std::byte>& out) {

@@ -10,7 +10,10 @@
 #include <string_view>
 #include <vector>
 
+#include "codec/beam/attributes.hpp"
+#include "codec/beam/exact_coder.hpp"
 #include "codec/beam/octree.hpp"
+#include "codec/beam/point_order.hpp"
 #include "codec/beam/range_layers.hpp"
 #include "codec/frame_layout.hpp"
 #include "sensor/beam_grid.hpp"
@@ -22,11 +25,16 @@ namespace sweepcast::beam {
 
 /// The parts of a frame. Layers come last, coarsest first, so that a frame may be cut between them.
 enum class Part : std::uint8_t {
-  model = 1,    ///< the sensor model; in the first frame and from time to time
-  grid = 2,     ///< which model, steps, numbers of rows and columns
-  firings = 3,  ///< the ticks of the columns
-  extras = 4,   ///< points without a cell
-  layer = 16,   ///< the first layer of ranges; the others follow with 17, 18, ...
+  model = 1,              ///< the sensor model; in the first frame and from time to time
+  grid = 2,               ///< which model, steps, numbers of rows and columns
+  firings = 3,            ///< the ticks of the columns
+  extras = 4,             ///< points without a cell
+  attributes = 5,         ///< units of intensity and time, what beams and firings tell of them
+  extra_attributes = 6,   ///< of the points without a cell
+  layer = 16,             ///< the first layer of ranges; the others follow with 17, 18, ...
+  order = 7,              ///< in which the points came; comes last
+  exact = 8,              ///< what is missing to the true coordinates; comes after the layers
+  layer_attributes = 32,  ///< of the points that layer 16 adds; the others follow with 33, 34, ...
 };
 
 [[nodiscard]] std::string_view part_name(std::uint8_t kind) noexcept;
@@ -58,6 +66,8 @@ class Encoder {
   void write_model_part(PartList& parts);
   void write_grid(PartList& parts);
   void write_extras(PartList& parts, SweepCounts& counts);
+  void write_layers(PartList& parts, SweepCounts& counts);
+  void write_exact_part(PartList& parts);
 
   BeamOptions options_;
   Crop crop_;
@@ -77,6 +87,8 @@ class Encoder {
   std::vector<std::int32_t> range_, azimuth_, height_;  ///< the image, columns aligned by azimuth
   LayerCoder layers_;
   std::vector<LatticePoint> lattice_;
+  std::vector<std::uint32_t> extra_points_;  ///< of `lattice_`, indices into the cloud
+  AttributeEncoder attributes_;
 };
 
 /// Makes clouds of frames; keeps the sensor models that it has seen.
@@ -93,12 +105,15 @@ class Decoder {
   [[nodiscard]] bool read_grid(std::span<const std::byte> bytes, std::size_t most_cells);
   [[nodiscard]] Status read_layers(std::span<const std::byte> frame, const FrameHeader& header,
                                    int layers);
-  [[nodiscard]] bool read_extras(std::span<const std::byte> bytes, std::size_t most,
-                                 PointCloud& cloud);
+  [[nodiscard]] Status read_extras(std::span<const std::byte> frame, const FrameHeader& header);
+  [[nodiscard]] Status read_exact_part(std::span<const std::byte> frame, const FrameHeader& header);
+  [[nodiscard]] Status read_slots(std::span<const std::byte> frame, const FrameHeader& header);
+  void assemble(PointCloud& cloud);
 
   SensorModel model_;
   std::optional<std::uint32_t> model_id_;
   std::optional<BeamUnprojector> unprojector_;
+  bool complete_ = false;     ///< whether all layers of the frame at hand are decoded
   bool known_model_ = false;  ///< whether the frame at hand refers to `model_`
   BeamImage image_;
   LayerPlan plan_;
@@ -106,7 +121,12 @@ class Decoder {
   std::vector<CellState> state_;
   std::vector<std::int32_t> azimuth_, height_;  ///< residuals, columns aligned by azimuth
   LayerCoder layers_;
-  std::vector<LatticePoint> lattice_;
+  double extras_step_m_ = 0;
+  std::vector<LatticePoint> lattice_;  ///< the extras
+  PointCloud placed_;                  ///< points of the image, row by row, then the extras
+  AttributeDecoder attributes_;
+  PointOrder order_;                  ///< empty where points come firing by firing
+  std::vector<std::uint32_t> slots_;  ///< places of `placed_` in the cloud
 };
 
 }  // namespace sweepcast::beam

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <bit>
+#include <limits>
 #include <string>
 
 #include "codec/beam/alignment.hpp"
@@ -16,6 +17,7 @@ constexpr std::int32_t kLargestStep = 1 << 20;
 }  // namespace
 
 std::string_view part_name(std::uint8_t kind) noexcept {
+  if (kind >= static_cast<std::uint8_t>(Part::layer_attributes)) return "layer attributes";
   if (kind >= static_cast<std::uint8_t>(Part::layer)) return "layer";
   switch (static_cast<Part>(kind)) {
     case Part::model:
@@ -26,7 +28,15 @@ std::string_view part_name(std::uint8_t kind) noexcept {
       return "firings";
     case Part::extras:
       return "extras";
+    case Part::attributes:
+    case Part::extra_attributes:
+      return "attributes";
+    case Part::exact:
+      return "exact";
+    case Part::order:
+      return "order";
     case Part::layer:
+    case Part::layer_attributes:
       break;
   }
   return "unknown";
@@ -41,17 +51,80 @@ Status Decoder::decode(std::span<const std::byte> frame, const FrameHeader& head
   if (!grid) return tl::unexpected(grid.error());
   if (!read_grid(*grid, most_cells(header.counts.points_in)))
     return fail(ErrorCode::corrupt, "the frame's grid cannot be right");
+  if (Status status = read_extras(frame, header); !status) return status;
+  placed_.clear();
+  complete_ = true;
   if (image_.cols > 0) {
     if (Status status = read_layers(frame, header, layers); !status) return status;
-    unprojector_->unproject(image_, cloud);
+    unprojector_->unproject(image_, placed_);
+  } else if (Status status = attributes_.begin(frame, header, nullptr, {}, lattice_.size());
+             !status) {
+    return status;
   }
-  if (!has_part(header, static_cast<std::uint8_t>(Part::extras))) return {};
-  const auto extras = checked_part(frame, header, static_cast<std::uint8_t>(Part::extras));
-  if (!extras) return tl::unexpected(extras.error());
-  if (!read_extras(*extras, header.counts.points_coded, cloud)) {
-    return fail(ErrorCode::corrupt, "the frame's extra points cannot be right");
+  for (const LatticePoint& place : lattice_) {
+    placed_.x.push_back(static_cast<float>(place[0] * extras_step_m_));
+    placed_.y.push_back(static_cast<float>(place[1] * extras_step_m_));
+    placed_.z.push_back(static_cast<float>(place[2] * extras_step_m_));
+  }
+  if (placed_.size() > header.counts.points_coded) {
+    return fail(ErrorCode::corrupt, "the frame holds more points than its head announces");
+  }
+  if (Status status = read_exact_part(frame, header); !status) return status;
+  if (Status status = read_slots(frame, header); !status) return status;
+  assemble(cloud);
+  return {};
+}
+
+// A coarser sweep, or one whose exact part is cut off, stays as near as its bound says.
+Status Decoder::read_exact_part(std::span<const std::byte> frame, const FrameHeader& header) {
+  if (!complete_ || !has_part(header, static_cast<std::uint8_t>(Part::exact))) return {};
+  const auto bytes = checked_part(frame, header, static_cast<std::uint8_t>(Part::exact));
+  if (!bytes && bytes.error().code == ErrorCode::truncated) return {};
+  if (!bytes) return tl::unexpected(bytes.error());
+  const PointOrigins origins = origins_of(&model_, image_, lattice_.size());
+  if (read_exact(*bytes, origins, placed_)) return {};
+  return fail(ErrorCode::corrupt, "the frame's exact coordinates end too early");
+}
+
+// Where the points go. A coarser sweep, or one whose order is cut off, comes firing by firing.
+Status Decoder::read_slots(std::span<const std::byte> frame, const FrameHeader& header) {
+  slots_.clear();
+  order_.items.clear();
+  order_.width = 0;
+  if (complete_ && has_part(header, static_cast<std::uint8_t>(Part::order))) {
+    const auto bytes = checked_part(frame, header, static_cast<std::uint8_t>(Part::order));
+    if (!bytes && bytes.error().code != ErrorCode::truncated) return tl::unexpected(bytes.error());
+    if (bytes) {
+      if (!read_order(*bytes, image_, lattice_.size(), header.counts.points_in, order_)) {
+        return fail(ErrorCode::corrupt, "the order of the frame's points cannot be right");
+      }
+      slots_of(order_, image_, lattice_.size(), slots_);
+      return {};
+    }
+  }
+  firing_order(image_, slots_);
+  for (std::size_t i = 0; i < lattice_.size(); ++i) {
+    slots_.push_back(static_cast<std::uint32_t>(slots_.size()));
   }
   return {};
+}
+
+// Puts all points where they belong, with their attributes.
+void Decoder::assemble(PointCloud& cloud) {
+  cloud.width = order_.width;
+  cloud.resize_xyz(std::max(slots_.size(), order_.items.size()));
+  if (cloud.size() > slots_.size()) {
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+    for (auto* column : {&cloud.x, &cloud.y, &cloud.z}) {
+      std::fill(column->begin(), column->end(), kNan);
+    }
+  }
+  for (std::size_t i = 0; i < placed_.size(); ++i) {
+    cloud.x[slots_[i]] = placed_.x[i];
+    cloud.y[slots_[i]] = placed_.y[i];
+    cloud.z[slots_[i]] = placed_.z[i];
+  }
+  attributes_.restore(image_, slots_, cloud);
 }
 
 Status Decoder::read_model_part(std::span<const std::byte> frame, const FrameHeader& header) {
@@ -115,15 +188,34 @@ Status Decoder::read_layers(std::span<const std::byte> frame, const FrameHeader&
   }
   const bool residuals = image_.azimuth_divisor != 0;
   for (auto* plane : {&azimuth_, &height_}) plane->assign(residuals ? image_.cells() : 0, 0);
+  if (Status status =
+          attributes_.begin(frame, header, &plan_, first_columns(model_, image_), lattice_.size());
+      !status) {
+    return status;
+  }
   layers_.begin(plan_);
   layers = std::clamp(layers, 1, LayerCoder::layers(plan_));
+  complete_ = layers == LayerCoder::layers(plan_);
   for (int layer = 0; layer < layers; ++layer) {
     const auto bytes = checked_part(
         frame, header, static_cast<std::uint8_t>(static_cast<int>(Part::layer) + layer));
-    if (!bytes && bytes.error().code == ErrorCode::truncated && layer > 0) break;
+    if (!bytes && bytes.error().code == ErrorCode::truncated && layer > 0) {
+      complete_ = false;
+      break;
+    }
     if (!bytes) return tl::unexpected(bytes.error());
+    // A layer whose attributes are cut off is left out whole.
+    const Status attributes = attributes_.check_layer(frame, header, layer);
+    if (!attributes && attributes.error().code == ErrorCode::truncated && layer > 0) {
+      complete_ = false;
+      break;
+    }
+    if (!attributes) return attributes;
     if (!layers_.decode(layer, *bytes, {azimuth_, height_})) {
       return fail(ErrorCode::corrupt, "a layer of the frame ends too early");
+    }
+    if (Status status = attributes_.read_layer(frame, header, layer, layers_); !status) {
+      return status;
     }
   }
 
@@ -140,19 +232,20 @@ Status Decoder::read_layers(std::span<const std::byte> frame, const FrameHeader&
   return {};
 }
 
-bool Decoder::read_extras(std::span<const std::byte> bytes, std::size_t most, PointCloud& cloud) {
-  ByteReader in(bytes);
-  const std::uint64_t count = in.get_varint(std::min<std::uint64_t>(most, kMostPoints));
-  const double step = static_cast<double>(in.get_varint(kLargestStep)) / kRangeUnits;
-  if (!in.ok()) return false;
-  lattice_.resize(count);
-  if (!read_octree(in.get_bytes(in.remaining()), lattice_)) return false;
-  for (const LatticePoint& place : lattice_) {
-    cloud.x.push_back(static_cast<float>(place[0] * step));
-    cloud.y.push_back(static_cast<float>(place[1] * step));
-    cloud.z.push_back(static_cast<float>(place[2] * step));
+Status Decoder::read_extras(std::span<const std::byte> frame, const FrameHeader& header) {
+  lattice_.clear();
+  if (!has_part(header, static_cast<std::uint8_t>(Part::extras))) return {};
+  const auto bytes = checked_part(frame, header, static_cast<std::uint8_t>(Part::extras));
+  if (!bytes) return tl::unexpected(bytes.error());
+  ByteReader in(*bytes);
+  const std::uint64_t count =
+      in.get_varint(std::min<std::uint64_t>(header.counts.points_coded, kMostPoints));
+  extras_step_m_ = static_cast<double>(in.get_varint(kLargestStep)) / kRangeUnits;
+  if (in.ok()) {
+    lattice_.resize(count);
+    if (read_octree(in.get_bytes(in.remaining()), lattice_)) return {};
   }
-  return true;
+  return fail(ErrorCode::corrupt, "the frame's extra points cannot be right");
 }
 
 }  // namespace sweepcast::beam

@@ -23,6 +23,10 @@ constexpr int kBaseCols = 16;
 // of it.
 constexpr double kAngularShare = 0.15;
 
+// The bound under which coordinates are coded before what is missing to the exact ones: measured,
+// it gives the fewest bytes in all, within 2 % on every sensor's sweeps.
+constexpr double kLosslessError = 0.01;
+
 // Points on the extras' lattice are at most this far from it, in steps: half a cube's diagonal.
 constexpr double kHalfDiagonal = 0.8660254037844387;
 
@@ -54,13 +58,20 @@ Status check(const BeamOptions& options) {
                                                  std::to_string(options.max_error_m) +
                                                  "; it must lie between 0.001 and 2 m");
   }
+  if (!(options.intensity_step >= 0.0 && options.intensity_step <= 1e6)) {
+    return fail(ErrorCode::invalid_argument, "the intensity step is " +
+                                                 std::to_string(options.intensity_step) +
+                                                 "; it must lie between 0 (exact) and 1e6");
+  }
   if (options.model_interval < 1) {
     return fail(ErrorCode::invalid_argument, "the model interval must be at least 1 frame");
   }
   return {};
 }
 
-Encoder::Encoder(const BeamOptions& options, const Crop& crop) : options_(options), crop_(crop) {}
+Encoder::Encoder(const BeamOptions& options, const Crop& crop) : options_(options), crop_(crop) {
+  if (options_.lossless) options_.max_error_m = kLosslessError;
+}
 
 // One sweep's way: sensor model, range image, layers of ranges; what has no cell goes aside.
 void Encoder::encode(const CloudView& cloud, PartList& parts, SweepCounts& counts) {
@@ -68,20 +79,69 @@ void Encoder::encode(const CloudView& cloud, PartList& parts, SweepCounts& count
   counts.points_in = static_cast<std::uint32_t>(cloud.size);
   parts.clear();
   if (!model_ && sweeps_to_wait_-- == 0) learn_model(cloud);
+  attributes_.read(cloud, options_);
   project(cloud, counts);
   write_model_part(parts);
   if (image_.cols > 0) plan_layers();
   write_grid(parts);
   write_extras(parts, counts);
-  if (image_.cols == 0) return;
+  const bool has_image = image_.cols > 0;
+  attributes_.begin(has_image ? &*model_ : nullptr, image_, has_image ? &plan_ : nullptr, range_,
+                    parts);
+  attributes_.write_extras(extra_points_, parts);
+  if (has_image) write_layers(parts, counts);
+  if (options_.lossless) write_exact_part(parts);
+  if (!options_.keep_order) return;
+  parts.begin(static_cast<std::uint8_t>(Part::order));
+  write_order(original_order(cloud.size, cloud.width, image_, extra_points_), image_,
+              extra_points_.size(), parts.bytes());
+}
 
+void Encoder::write_layers(PartList& parts, SweepCounts& counts) {
   layers_.begin(plan_);
   for (int layer = 0; layer < LayerCoder::layers(plan_); ++layer) {
     parts.begin(static_cast<std::uint8_t>(static_cast<int>(Part::layer) + layer));
     layers_.encode(layer, {range_, azimuth_, height_}, parts.bytes());
+    attributes_.write_layer(layer, layers_, parts);
   }
   counts.points_coded += static_cast<std::uint32_t>(
       range_.size() - as_unsigned(std::count(range_.begin(), range_.end(), 0)));
+}
+
+// What the decoder will have, and what it lacks.
+void Encoder::write_exact_part(PartList& parts) {
+  placed_.clear();
+  PointCloud truth;
+  std::vector<std::int32_t> ranges;
+  const auto add_truth = [&](std::uint32_t point) {
+    truth.x.push_back(x_[point]);
+    truth.y.push_back(y_[point]);
+    truth.z.push_back(z_[point]);
+  };
+  if (image_.cols > 0) {
+    std::vector<std::int32_t> decoded;
+    std::vector<CellState> state;
+    layers_.read(decoded, state);
+    for_each_aligned(*model_, image_, [&](int /*row*/, std::size_t cell, std::size_t aligned) {
+      if (image_.range[cell] == 0) return;
+      const bool measured = state[aligned] == CellState::measured;
+      if (measured) ranges.push_back(image_.range[cell]);
+      image_.range[cell] = measured ? decoded[aligned] : 0;
+      if (!measured) return;
+      add_truth(image_.point[cell]);
+    });
+    unprojector_->unproject(image_, placed_);
+  }
+  const double step = static_cast<double>(extras_step(options_)) / kRangeUnits;
+  for (std::size_t i = 0; i < lattice_.size(); ++i) {
+    placed_.x.push_back(static_cast<float>(lattice_[i][0] * step));
+    placed_.y.push_back(static_cast<float>(lattice_[i][1] * step));
+    placed_.z.push_back(static_cast<float>(lattice_[i][2] * step));
+    add_truth(extra_points_[i]);
+  }
+  parts.begin(static_cast<std::uint8_t>(Part::exact));
+  const PointOrigins origins = origins_of(model_ ? &*model_ : nullptr, image_, lattice_.size());
+  write_exact(placed_, origins, truth, ranges, parts.bytes());
 }
 
 void Encoder::learn_model(const CloudView& cloud) {
@@ -245,6 +305,7 @@ void Encoder::write_grid(PartList& parts) {
 
 void Encoder::write_extras(PartList& parts, SweepCounts& counts) {
   lattice_.clear();
+  extra_points_.clear();
   const std::int32_t step = extras_step(options_);
   const double per_metre = double{kRangeUnits} / step;
   for (const ExtraPoint& extra : image_.extras) {
@@ -270,6 +331,7 @@ void Encoder::write_extras(PartList& parts, SweepCounts& counts) {
     }
     if (inside) {
       lattice_.push_back(place);
+      extra_points_.push_back(extra.point);
     } else {
       ++counts.out_of_view;
     }
@@ -279,6 +341,7 @@ void Encoder::write_extras(PartList& parts, SweepCounts& counts) {
   ByteWriter out = parts.begin(static_cast<std::uint8_t>(Part::extras));
   out.put_varint(lattice_.size());
   out.put_varint(as_unsigned(step));
+  sort_for_octree(lattice_, extra_points_);
   write_octree(lattice_, parts.bytes());
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 #include "codec/entropy/mixer.hpp"
 #include "codec/entropy/range_coder.hpp"
@@ -112,6 +113,16 @@ class TreeCoder {
 };
 
 }  // namespace
+
+void sort_for_octree(std::vector<LatticePoint>& points, std::vector<std::uint32_t>& belongings) {
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> codes(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) codes[i] = {morton(points[i]), belongings[i]};
+  std::sort(codes.begin(), codes.end());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i] = point_of(codes[i].first);
+    belongings[i] = codes[i].second;
+  }
+}
 
 void write_octree(std::vector<LatticePoint>& points, std::vector<std::byte>& out) {
   if (points.empty()) return;

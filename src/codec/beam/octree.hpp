@@ -14,6 +14,9 @@ using LatticePoint = std::array<std::int32_t, 3>;
 
 inline constexpr std::int32_t kLatticeLimit = 1 << 20;
 
+/// Sorts points, and what belongs to each, into the order in which they will be decoded.
+void sort_for_octree(std::vector<LatticePoint>& points, std::vector<std::uint32_t>& belongings);
+
 /// Sorts `points` into the order in which they will be decoded and writes them.
 void write_octree(std::vector<LatticePoint>& points, std::vector<std::byte>& out);
 

@@ -27,7 +27,11 @@ class SweepcastPeer : public Peer {
 
 Result<std::unique_ptr<Peer>> make_sweepcast_peer(const EncoderOptions& options,
                                                   std::string setting) {
-  auto encoder = Encoder::create(options);
+  EncoderOptions geometry_only = options;
+  geometry_only.beam.fields = Fields::xyz;
+  geometry_only.beam.keep_order = false;
+  geometry_only.beam.lossless = false;
+  auto encoder = Encoder::create(geometry_only);
   if (!encoder) return tl::unexpected(std::move(encoder.error()));
   return std::make_unique<SweepcastPeer>(std::string(name(options.codec)), std::move(setting),
                                          std::move(*encoder));

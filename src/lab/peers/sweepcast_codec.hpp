@@ -10,6 +10,7 @@
 namespace sweepcast::lab {
 
 /// Makes a peer of an `Encoder` with these options and a `Decoder`. `setting` is its label.
+/// Only coordinates are coded, whatever the options say: peers are compared by geometry.
 /// Errors: invalid_argument, see `Encoder::create`.
 [[nodiscard]] Result<std::unique_ptr<Peer>> make_sweepcast_peer(const EncoderOptions& options,
                                                                 std::string setting);

@@ -1,6 +1,8 @@
 // Damaged frames of codec beam, their checksums made right: an error and no cloud, or a cloud.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <tuple>
 
@@ -29,7 +31,25 @@ std::vector<Bytes> sound_frames() {
       frames.push_back(test::encode(encoder, test::spinning_sweep(12, 300, i), {i, 0, "s"}));
     }
   }
+  EncoderOptions everything = test::beam_options(0.1);
+  everything.beam.keep_order = true;
+  everything.beam.lossless = true;
   std::mt19937 random(7);
+  PointCloud whole = test::spinning_sweep(12, 200, 4);
+  whole.resize_xyz(whole.size() / 8 * 8);
+  whole.width = 8;
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    whole.intensity.push_back(static_cast<float>(uniform_int(random, 0, 99)));
+    whole.ring.push_back(static_cast<std::uint16_t>(i % 12));
+    whole.time_ns.push_back(static_cast<std::int64_t>(i) * 2304 + uniform_int(random, 0, 2));
+  }
+  frames.push_back(test::encode(everything, whole));
+  for (float& intensity : whole.intensity) intensity = std::sin(intensity);
+  whole.width = 0;
+  frames.push_back(test::encode(everything, whole));
+  for (float& intensity : whole.intensity)
+    intensity = static_cast<float>(uniform_int(random, 0, 1 << 30)) * 1e-3F;
+  frames.push_back(test::encode(everything, whole));
   PointCloud strays;
   for (int i = 0; i < 200; ++i) {
     test::add_point(strays, uniform_int(random, -9, 9), uniform_int(random, -9, 9), 1);

@@ -56,7 +56,9 @@ TEST(BeamRealSweeps, RatioOnKitti) {
   constexpr std::array<Row, 6> kRows{
       {{0.01, 37}, {0.02, 46}, {0.05, 64}, {0.1, 87}, {0.2, 120}, {0.4, 160}}};
   for (const Row& row : kRows) {
-    Encoder encoder = test::encoder_of(test::beam_options(row.max_error_m));
+    EncoderOptions options = test::beam_options(row.max_error_m);
+    options.beam.fields = Fields::xyz;
+    Encoder encoder = test::encoder_of(options);
     Decoder decoder;
     double ratios = 0;
     double raw = 0;
