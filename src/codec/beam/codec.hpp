@@ -67,7 +67,8 @@ class Encoder {
   void write_grid(PartList& parts);
   void write_extras(PartList& parts, SweepCounts& counts);
   void write_layers(PartList& parts, SweepCounts& counts);
-  void write_exact_part(PartList& parts);
+  [[nodiscard]] std::vector<std::int32_t> take_decoded();
+  void write_exact_part(std::span<const std::int32_t> ranges, PartList& parts);
 
   BeamOptions options_;
   Crop crop_;

@@ -90,7 +90,10 @@ void Encoder::encode(const CloudView& cloud, PartList& parts, SweepCounts& count
                     parts);
   attributes_.write_extras(extra_points_, parts);
   if (has_image) write_layers(parts, counts);
-  if (options_.lossless) write_exact_part(parts);
+  if (!options_.lossless && !options_.keep_order) return;
+  std::vector<std::int32_t> ranges;
+  if (has_image) ranges = take_decoded();
+  if (options_.lossless) write_exact_part(ranges, parts);
   if (!options_.keep_order) return;
   parts.begin(static_cast<std::uint8_t>(Part::order));
   write_order(original_order(cloud.size, cloud.width, image_, extra_points_), image_,
@@ -108,29 +111,34 @@ void Encoder::write_layers(PartList& parts, SweepCounts& counts) {
       range_.size() - as_unsigned(std::count(range_.begin(), range_.end(), 0)));
 }
 
-// What the decoder will have, and what it lacks.
-void Encoder::write_exact_part(PartList& parts) {
-  placed_.clear();
+// Puts what the decoder has in the place of the image's ranges: cells that thinning left out have
+// none. Gives the true ranges of those that it has, row by row.
+std::vector<std::int32_t> Encoder::take_decoded() {
+  std::vector<std::int32_t> decoded, truth;
+  std::vector<CellState> state;
+  layers_.read(decoded, state);
+  for_each_aligned(*model_, image_, [&](int /*row*/, std::size_t cell, std::size_t aligned) {
+    const bool measured = state[aligned] == CellState::measured;
+    if (measured) truth.push_back(image_.range[cell]);
+    image_.range[cell] = measured ? decoded[aligned] : 0;
+  });
+  return truth;
+}
+
+// What the decoder lacks to the true coordinates. `ranges`: as `take_decoded` gives them.
+void Encoder::write_exact_part(std::span<const std::int32_t> ranges, PartList& parts) {
   PointCloud truth;
-  std::vector<std::int32_t> ranges;
   const auto add_truth = [&](std::uint32_t point) {
     truth.x.push_back(x_[point]);
     truth.y.push_back(y_[point]);
     truth.z.push_back(z_[point]);
   };
+  placed_.clear();
   if (image_.cols > 0) {
-    std::vector<std::int32_t> decoded;
-    std::vector<CellState> state;
-    layers_.read(decoded, state);
-    for_each_aligned(*model_, image_, [&](int /*row*/, std::size_t cell, std::size_t aligned) {
-      if (image_.range[cell] == 0) return;
-      const bool measured = state[aligned] == CellState::measured;
-      if (measured) ranges.push_back(image_.range[cell]);
-      image_.range[cell] = measured ? decoded[aligned] : 0;
-      if (!measured) return;
-      add_truth(image_.point[cell]);
-    });
     unprojector_->unproject(image_, placed_);
+    for (std::size_t cell = 0; cell < image_.cells(); ++cell) {
+      if (image_.range[cell] != 0) add_truth(image_.point[cell]);
+    }
   }
   const double step = static_cast<double>(extras_step(options_)) / kRangeUnits;
   for (std::size_t i = 0; i < lattice_.size(); ++i) {
