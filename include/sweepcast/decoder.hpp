@@ -28,7 +28,9 @@ class Decoder {
   ~Decoder();
 
   /// Decodes one whole frame into `cloud`, whose memory is reused; columns that the frame does not
-  /// carry come back empty. Points come row by row from the lowest, each row by azimuth. On error
+  /// carry come back empty. Codec rcpcc: points come row by row from the lowest, each row by
+  /// azimuth. Codec beam: firing by firing, each from the highest beam down, points without a cell
+  /// last; or in the original order where the frame has it and all its layers are decoded. On error
   /// `cloud` is empty.
   /// Errors: truncated, corrupt, unsupported, limit.
   [[nodiscard]] Status decode(std::span<const std::byte> frame, PointCloud& cloud);
