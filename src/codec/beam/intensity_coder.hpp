@@ -98,7 +98,7 @@ class IntensityCoder {
   static constexpr std::size_t kCount = IntensityNeighbours::kCount;
   static constexpr std::size_t kTaps = 8;  // neighbours with a weight that adapts
   static constexpr std::size_t kSpreads = 12;
-  static constexpr std::size_t kWeightSets = 17 * 8;
+  static constexpr std::size_t kWeightSets = std::size_t{17} * 8;
   static constexpr std::uint32_t kUnknownChance = 65;
   static constexpr std::int32_t kOne = 16;  // estimates and errors are in sixteenths
   static constexpr std::int32_t kSmallestScale = 6;
@@ -136,7 +136,7 @@ class IntensityCoder {
     Estimate estimate{};
     estimate.mean =
         shares > 0 ? static_cast<std::int32_t>((sum * kOne + shares / 2) / shares) : last_ * kOne;
-    estimate.power = kOne * kOne * 4;
+    estimate.power = std::int64_t{kOne} * kOne * 4;
     std::int64_t dot = 0;
     for (std::size_t i = 0; i < kTaps; ++i) {
       const bool used = near.value[i] >= 0 && std::abs(near.range[i] - range) * 8 <= range;
