@@ -60,6 +60,7 @@ void report(benchmark::State& state, std::size_t bytes_out) {
 
 sweepcast::Result<sweepcast::Encoder> encoder_at(std::int64_t level) {
   sweepcast::EncoderOptions options;
+  options.codec = sweepcast::CodecId::rcpcc;
   options.rcpcc.params = sweepcast::kRcpccLevels.at(static_cast<std::size_t>(level));
   return sweepcast::Encoder::create(options);
 }

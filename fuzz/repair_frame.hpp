@@ -18,14 +18,15 @@ inline void put_checksum(std::span<std::byte> frame, std::size_t at, std::uint32
 
 /// Walks the head as docs/format.md has it; leaves the frame alone where that leads nowhere.
 inline void repair_checksums(std::span<std::byte> frame) {
-  constexpr std::size_t kCounts = 7;
   ByteReader in(frame);
   (void)in.get<std::uint32_t>();  // magic
-  (void)in.get<std::uint16_t>();  // version, codec
-  (void)in.get_varint();          // sequence
-  (void)in.get<std::int64_t>();   // stamp
-  (void)in.get_text();            // sensor
-  for (std::size_t i = 0; i < kCounts; ++i) (void)in.get_varint();
+  (void)in.get<std::uint8_t>();   // version
+  const auto codec = static_cast<CodecId>(in.get<std::uint8_t>());
+  const std::size_t counts = codec == CodecId::beam ? 8 : 7;
+  (void)in.get_varint();         // sequence
+  (void)in.get<std::int64_t>();  // stamp
+  (void)in.get_text();           // sensor
+  for (std::size_t i = 0; i < counts; ++i) (void)in.get_varint();
   struct Part {
     std::size_t checksum_at, size;
   };

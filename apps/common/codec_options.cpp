@@ -77,34 +77,39 @@ Box box_of(const std::array<double, 6>& c, const std::string& option) {
 }
 
 void add_quality(CLI::App& app, EncoderOptions& options) {
-  RcpccOptions& rcpcc = options.rcpcc;
-  auto* level =
-      app.add_option_function<int>(
-             "--level",
-             [&rcpcc](int chosen) {
-               rcpcc.params = kRcpccLevels.at(static_cast<std::size_t>(chosen));
-             },
-             "Level of the released code, 0 the finest")
-          ->check(CLI::Range(0, static_cast<int>(kRcpccLevels.size()) - 1).description(""))
-          ->type_name("0..5");
-  auto* params =
-      add_numbers<4>(app, "--params", "AZIMUTH,ELEVATION,THRESHOLD,QSTEP",
-                     "Steps in degrees, threshold and quantiser step in metres [0.5,0.5,0.3,0.2]",
-                     [&rcpcc](const std::array<double, 4>& p) {
-                       rcpcc.params = {p[0], p[1], p[2], p[3]};
-                     });
-  level->excludes(params);
-  app.add_option_function<double>(
-         "--max-error",
-         [&options, &app](double metres) {
-           if (app.get_option("--codec")->count() == 0) options.codec = CodecId::beam;
-           options.beam.max_error_m = metres;
-         },
-         fmt::format("Codec beam: no point decodes farther from its place [{}]",
-                     options.beam.max_error_m))
-      ->type_name("METRES")
+  auto* level = app.add_option_function<int>(
+                       "--level",
+                       [&options](int chosen) {
+                         options.beam.level = chosen;
+                         options.rcpcc.params = kRcpccLevels.at(static_cast<std::size_t>(chosen));
+                       },
+                       "Level of the codec's quality ladder, 0 the finest")
+                    ->check(CLI::Range(0, static_cast<int>(kBeamLevels.size()) - 1).description(""))
+                    ->type_name("0..5");
+  auto* error =
+      app.add_option("--max-error", options.beam.max_error_m,
+                     fmt::format("Codec beam: no point decodes farther from its place [{}]",
+                                 options.beam.max_error_m))
+          ->type_name("METRES")
+          ->excludes(level);
+  app.add_option("--target-bytes", options.beam.target_bytes,
+                 "Codec beam: as good as fits so many bytes a sweep, the sensor model apart")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 28).description(""))
+      ->type_name("N")
       ->excludes(level)
-      ->excludes(params);
+      ->excludes(error);
+  add_choice<Effort>(app, "--effort", options.beam.effort,
+                     {{"fast", Effort::fast}, {"default", Effort::normal}, {"best", Effort::best}},
+                     "Codec beam: time spent to save bytes, in encoding and decoding [default]");
+  add_numbers<4>(app, "--params", "AZIMUTH,ELEVATION,THRESHOLD,QSTEP",
+                 "Codec rcpcc: steps in degrees, threshold and quantiser step in metres "
+                 "[0.5,0.5,0.3,0.2]",
+                 [&options, &app](const std::array<double, 4>& p) {
+                   if (app.get_option("--codec")->count() == 0) options.codec = CodecId::rcpcc;
+                   options.rcpcc.params = {p[0], p[1], p[2], p[3]};
+                 })
+      ->excludes(level)
+      ->excludes(error);
 }
 
 void add_fields(CLI::App& app, BeamOptions& beam) {
@@ -143,7 +148,7 @@ void add_codec_options(CLI::App& app, EncoderOptions& options) {
   RcpccOptions& rcpcc = options.rcpcc;
   add_choice<CodecId>(app, "--codec", options.codec,
                       {{"rcpcc", CodecId::rcpcc}, {"beam", CodecId::beam}},
-                      "How sweeps are coded [rcpcc]");
+                      "How sweeps are coded [beam]");
   add_quality(app, options);
   add_fields(app, options.beam);
   app.add_option("--block", rcpcc.block_size,
@@ -200,15 +205,15 @@ void require_matching(const CLI::App& app, const EncoderOptions& options) {
                                                    codec, codec));
   };
   if (options.codec == CodecId::rcpcc) {
-    for (const char* option :
-         {"--max-error", "--fields", "--intensity-step", "--keep-order", "--lossless"}) {
+    for (const char* option : {"--max-error", "--target-bytes", "--effort", "--fields",
+                               "--intensity-step", "--keep-order", "--lossless"}) {
       refuse(option, name(CodecId::beam));
     }
     return;
   }
   for (const char* option :
-       {"--level", "--params", "--block", "--region", "--model", "--unfit", "--quantiser",
-        "--collision", "--zstd", "--fov-elevation", "--fov-azimuth", "--max-range"}) {
+       {"--params", "--block", "--region", "--model", "--unfit", "--quantiser", "--collision",
+        "--zstd", "--fov-elevation", "--fov-azimuth", "--max-range"}) {
     refuse(option, name(CodecId::rcpcc));
   }
 }

@@ -20,7 +20,7 @@ struct CountField {
 
 /// Every field; the first two are the points that came in and that were coded, the others say why
 /// the rest was not.
-inline constexpr std::array<CountField, 7> kCountFields{{
+inline constexpr std::array<CountField, 8> kCountFields{{
     {"points_in", "points in", &SweepCounts::points_in},
     {"points_coded", "coded", &SweepCounts::points_coded},
     {"not_finite", "not finite", &SweepCounts::not_finite},
@@ -28,6 +28,7 @@ inline constexpr std::array<CountField, 7> kCountFields{{
     {"cropped", "cropped", &SweepCounts::cropped},
     {"out_of_view", "out of view", &SweepCounts::out_of_view},
     {"collided", "in a cell that another point won", &SweepCounts::collided},
+    {"thinned", "thinned", &SweepCounts::thinned},
 }};
 
 /// Sums over sweeps, in the order of `kCountFields`.

@@ -29,6 +29,7 @@ struct DecodeOptions {
   bool ascii = false;
   bool compressed = false;
   int layers = DecoderOptions{}.max_layers;
+  bool fill = false;
   bool json = false;
 };
 
@@ -111,7 +112,7 @@ Status decode(const DecodeOptions& options) {
   const CloudFormat format = *cloud_format_of("x." + options.format);
 
   Workspace work;
-  work.decoder = Decoder({.max_layers = options.layers});
+  work.decoder = Decoder({.max_layers = options.layers, .fill = options.fill});
   std::vector<Decoded> frames;
   std::vector<std::string> errors;
   const std::size_t count = reader->entries().size();
@@ -163,6 +164,9 @@ void add_decode(CLI::App& app, Command& command) {
                   "Codec beam: decode this many layers only, coarsest first [all]")
       ->check(CLI::Range(1, DecoderOptions{}.max_layers).description(""))
       ->type_name("K");
+  sub->add_flag("--fill", options->fill,
+                "Codec beam: interpolate what a level or a byte budget left out; pcd and ply mark "
+                "such points in a field \"filled\"");
   sub->add_flag("--json", options->json, "Print the outcome as JSON");
   sub->footer("Example: sweepcast decode drive.sweep -o decoded --format pcd");
   sub->callback([options, &command] {

@@ -16,6 +16,8 @@ struct PointCloud {
   std::vector<float> intensity;       ///< the sensor's own unit; optional
   std::vector<std::uint16_t> ring;    ///< the beam's number, 0 the first; optional
   std::vector<std::int64_t> time_ns;  ///< nanoseconds since the sweep's first firing; optional
+  /// 1 where a point was not measured but interpolated by the decoder; optional.
+  std::vector<std::uint8_t> filled;
   /// Points in a row of an organised cloud, which is stored row after row, its size a multiple of
   /// it; 0: not organised. Slots without a point have NaN coordinates.
   std::uint32_t width = 0;

@@ -15,6 +15,9 @@ namespace sweepcast {
 struct DecoderOptions {
   std::size_t max_points = std::size_t{1} << 24;
   int max_layers = 64;  ///< codec beam: decode only this many layers, coarsest first
+  /// Codec beam: points that were left out because interpolation comes near them are appended as
+  /// it has them, marked in `PointCloud::filled`; their other attributes are 0.
+  bool fill = false;
 };
 
 /// Makes clouds of frames. Needs no parameter beside the frame and trusts nothing in it.

@@ -86,6 +86,10 @@ enum class Fields : std::uint8_t {
 /// Options of codec `beam`.
 struct BeamOptions {
   double max_error_m = 0.05;  ///< no point decodes farther from its place, metres, 0.001 to 2
+  std::optional<int> level;   ///< 0 to 5: one of kBeamLevels in place of max_error_m
+  /// Where above 0: as good as fits so many bytes a frame, the sensor's model not counted, in place
+  /// of max_error_m.
+  std::size_t target_bytes = 0;
   Effort effort = Effort::normal;
   int model_interval = 10;      ///< every how many frames the sensor's model is sent, at least 1
   Fields fields = Fields::all;  ///< of those that the cloud has; the optional ones are exact
@@ -101,10 +105,10 @@ struct BeamOptions {
 
 /// Options of an encoder.
 struct EncoderOptions {
-  CodecId codec = CodecId::rcpcc;
-  Crop crop;
-  RcpccOptions rcpcc;
-  BeamOptions beam;
+  CodecId codec = CodecId::beam;
+  Crop crop{};
+  RcpccOptions rcpcc{};
+  BeamOptions beam{};
 };
 
 /// Makes frames of sweeps. Keeps its buffers: from the second sweep of a kind on, `encode`

@@ -37,6 +37,7 @@ struct SweepCounts {
   std::uint32_t cropped = 0;       ///< left out by the crop that the caller asked for
   std::uint32_t out_of_view = 0;   ///< outside the field of view or beyond the largest range
   std::uint32_t collided = 0;      ///< another point won the same cell
+  std::uint32_t thinned = 0;       ///< left out where interpolation comes near: codec beam's levels
 
   [[nodiscard]] bool operator==(const SweepCounts&) const = default;
 };

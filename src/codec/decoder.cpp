@@ -25,7 +25,7 @@ struct Decoder::State {
       return fail(ErrorCode::limit, "the frame holds more points than the decoder may give");
     }
     if (header.codec == CodecId::beam) {
-      return beam.decode(frame, header, options.max_layers, cloud);
+      return beam.decode(frame, header, options.max_layers, options.fill, cloud);
     }
     if (header.frame_size > frame.size()) {
       return fail(ErrorCode::truncated, "the frame is cut short");

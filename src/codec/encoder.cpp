@@ -71,11 +71,9 @@ Result<Encoder> Encoder::create(const EncoderOptions& options) {
 Result<std::span<const std::byte>> Encoder::encode(const CloudView& cloud, const SweepInfo& info) {
   if (const Status status = check(cloud, info); !status) return tl::unexpected(status.error());
   State& s = *state_;
-  if (s.codec == CodecId::beam) {
-    s.beam.encode(cloud, s.parts, s.counts);
-  } else if (const Status status = s.rcpcc.encode(cloud, s.parts, s.counts); !status) {
-    return tl::unexpected(status.error());
-  }
+  const Status status = s.codec == CodecId::beam ? s.beam.encode(cloud, info, s.parts, s.counts)
+                                                 : s.rcpcc.encode(cloud, s.parts, s.counts);
+  if (!status) return tl::unexpected(status.error());
   write_frame(s.codec, info, s.counts, s.parts, s.frame);
   return s.frame;
 }

@@ -12,7 +12,7 @@
 namespace sweepcast {
 namespace {
 
-// The counts in the order in which the frame has them.
+// The counts in the order in which every frame has them; those of codec beam add `thinned`.
 constexpr std::array kCounts = {&SweepCounts::points_in,  &SweepCounts::points_coded,
                                 &SweepCounts::not_finite, &SweepCounts::zero_range,
                                 &SweepCounts::cropped,    &SweepCounts::out_of_view,
@@ -34,6 +34,8 @@ Status read_head(ByteReader& in, FrameHeader& header) {
   for (const auto count : kCounts) {
     header.counts.*count = static_cast<std::uint32_t>(in.get_varint(0xFFFFFFFFU));
   }
+  header.counts.thinned =
+      header.codec == CodecId::beam ? static_cast<std::uint32_t>(in.get_varint(0xFFFFFFFFU)) : 0;
   header.parts.resize(in.get_varint(kMostParts));
   for (FramePart& part : header.parts) {
     part.kind = in.get<std::uint8_t>();
@@ -41,6 +43,19 @@ Status read_head(ByteReader& in, FrameHeader& header) {
     part.crc32 = in.get<std::uint32_t>();
   }
   return {};
+}
+
+void write_head(CodecId codec, const SweepInfo& info, const SweepCounts& counts, std::size_t parts,
+                ByteWriter& out) {
+  out.put(kFrameMagic);
+  out.put(kFrameVersion);
+  out.put(static_cast<std::uint8_t>(codec));
+  out.put_varint(info.sequence);
+  out.put(info.stamp_ns);
+  out.put_text(info.sensor);
+  for (const auto count : kCounts) out.put_varint(counts.*count);
+  if (codec == CodecId::beam) out.put_varint(counts.thinned);
+  out.put_varint(parts);
 }
 
 }  // namespace
@@ -100,18 +115,17 @@ ByteWriter PartList::begin(std::uint8_t kind) {
   return ByteWriter(bytes_);
 }
 
+void PartList::truncate(std::size_t count) {
+  if (count >= parts_.size()) return;
+  bytes_.resize(parts_[count].begin);
+  parts_.resize(count);
+}
+
 void write_frame(CodecId codec, const SweepInfo& info, const SweepCounts& counts,
                  const PartList& parts, std::vector<std::byte>& frame) {
   frame.clear();
   ByteWriter out(frame);
-  out.put(kFrameMagic);
-  out.put(kFrameVersion);
-  out.put(static_cast<std::uint8_t>(codec));
-  out.put_varint(info.sequence);
-  out.put(info.stamp_ns);
-  out.put_text(info.sensor);
-  for (const auto count : kCounts) out.put_varint(counts.*count);
-  out.put_varint(parts.parts_.size());
+  write_head(codec, info, counts, parts.parts_.size(), out);
   const std::span<const std::byte> bytes = parts.bytes_;
   for (std::size_t i = 0; i < parts.parts_.size(); ++i) {
     const bool last = i + 1 == parts.parts_.size();
@@ -123,6 +137,24 @@ void write_frame(CodecId codec, const SweepInfo& info, const SweepCounts& counts
   }
   out.put(crc32(frame));
   out.put_bytes(bytes);
+}
+
+std::size_t frame_size(CodecId codec, const SweepInfo& info, const SweepCounts& counts,
+                       const PartList& parts, std::size_t first) {
+  constexpr std::size_t kChecksum = sizeof(std::uint32_t);
+  std::vector<std::byte> head;
+  ByteWriter out(head);
+  write_head(codec, info, counts, parts.parts_.size() - first, out);
+  std::size_t size = kChecksum;
+  for (std::size_t i = first; i < parts.parts_.size(); ++i) {
+    const bool last = i + 1 == parts.parts_.size();
+    const std::size_t bytes =
+        (last ? parts.bytes_.size() : parts.parts_[i + 1].begin) - parts.parts_[i].begin;
+    out.put(parts.parts_[i].kind);
+    out.put_varint(bytes);
+    size += bytes + kChecksum;
+  }
+  return size + head.size();
 }
 
 bool has_part(const FrameHeader& header, std::uint8_t kind) {

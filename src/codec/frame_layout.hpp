@@ -27,6 +27,10 @@ class PartList {
   ByteWriter begin(std::uint8_t kind);
   [[nodiscard]] std::vector<std::byte>& bytes() { return bytes_; }
 
+  [[nodiscard]] std::size_t size() const { return parts_.size(); }
+  /// Forgets all but the first `count` parts.
+  void truncate(std::size_t count);
+
  private:
   struct Part {
     std::uint8_t kind;
@@ -37,11 +41,18 @@ class PartList {
 
   friend void write_frame(CodecId codec, const SweepInfo& info, const SweepCounts& counts,
                           const PartList& parts, std::vector<std::byte>& frame);
+  friend std::size_t frame_size(CodecId codec, const SweepInfo& info, const SweepCounts& counts,
+                                const PartList& parts, std::size_t first);
 };
 
 /// Assembles a frame. `info.sensor` has at most 255 bytes.
 void write_frame(CodecId codec, const SweepInfo& info, const SweepCounts& counts,
                  const PartList& parts, std::vector<std::byte>& frame);
+
+/// Bytes of a frame of the parts from `first` on.
+[[nodiscard]] std::size_t frame_size(CodecId codec, const SweepInfo& info,
+                                     const SweepCounts& counts, const PartList& parts,
+                                     std::size_t first);
 
 /// Whether the frame has a part of this kind.
 [[nodiscard]] bool has_part(const FrameHeader& header, std::uint8_t kind);

@@ -29,6 +29,7 @@ void PointCloud::clear() noexcept {
   intensity.clear();
   ring.clear();
   time_ns.clear();
+  filled.clear();
   width = 0;
 }
 

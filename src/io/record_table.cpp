@@ -17,7 +17,7 @@ struct ColumnName {
 };
 
 /// In order of preference within a column.
-constexpr std::array<ColumnName, 15> kColumnNames{{
+constexpr std::array<ColumnName, 16> kColumnNames{{
     {CloudColumn::x, "x"},
     {CloudColumn::y, "y"},
     {CloudColumn::z, "z"},
@@ -33,6 +33,7 @@ constexpr std::array<ColumnName, 15> kColumnNames{{
     {CloudColumn::time, "timestamp"},
     {CloudColumn::time, "time_stamp"},
     {CloudColumn::time, "time_offset"},
+    {CloudColumn::filled, "filled"},
 }};
 
 bool same_name(std::string_view name, std::string_view lower) {
@@ -61,6 +62,7 @@ class CloudFiller {
     for (const RecordField& field : fields) {
       if (field.column == CloudColumn::intensity) cloud_.intensity.resize(count);
       if (field.column == CloudColumn::ring) cloud_.ring.resize(count);
+      if (field.column == CloudColumn::filled) cloud_.filled.resize(count);
       if (field.column != CloudColumn::time) continue;
       cloud_.time_ns.resize(count);
       if (is_real(field.type)) seconds_.resize(count);
@@ -88,6 +90,9 @@ class CloudFiller {
       case CloudColumn::time:
         cloud_.time_ns[i] = number.integer;
         if (!seconds_.empty()) seconds_[i] = number.real;
+        break;
+      case CloudColumn::filled:
+        cloud_.filled[i] = number.real > 0.0 ? 1 : 0;
         break;
       case CloudColumn::none:
         break;
@@ -180,6 +185,8 @@ double value_of(const PointCloud& cloud, CloudColumn column, std::size_t i) {
       return cloud.ring[i];
     case CloudColumn::time:
       return static_cast<double>(cloud.time_ns[i]) / 1e9;
+    case CloudColumn::filled:
+      return cloud.filled[i];
     case CloudColumn::none:
       break;
   }
@@ -302,6 +309,7 @@ std::vector<RecordField> fields_of(const PointCloud& cloud) {
   if (cloud.has_intensity()) add("intensity", NumberType::f32, CloudColumn::intensity);
   if (cloud.has_ring()) add("ring", NumberType::u16, CloudColumn::ring);
   if (cloud.has_time()) add("time", NumberType::f64, CloudColumn::time);
+  if (!cloud.filled.empty()) add("filled", NumberType::u8, CloudColumn::filled);
   return fields;
 }
 

@@ -20,7 +20,7 @@ inline constexpr std::uint64_t kMaxPoints = std::uint64_t{1} << 24;
 inline constexpr std::uint64_t kMaxFields = 4096;
 
 /// What a field means to a cloud.
-enum class CloudColumn : std::uint8_t { none, x, y, z, intensity, ring, time };
+enum class CloudColumn : std::uint8_t { none, x, y, z, intensity, ring, time, filled };
 
 /// A field of every record.
 struct RecordField {
@@ -55,7 +55,7 @@ struct RecordField {
                                   std::uint64_t count);
 
 /// The fields that a cloud is written with: x y z and intensity as f32, ring as u16, time as f64
-/// seconds; optional ones where the cloud has them.
+/// seconds, filled as u8; optional ones where the cloud has them.
 [[nodiscard]] std::vector<RecordField> fields_of(const PointCloud& cloud);
 
 /// Appends all records to `out`, record after record; text has a line for each. Not big-endian.

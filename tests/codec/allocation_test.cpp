@@ -102,7 +102,7 @@ TEST(Allocation, SmallerSweepsAllocateNothingEither) {
   // For as long as zstd might take to give back memory that it finds too large.
   const PointCloud large = test::street(32, 900, 1);
   const PointCloud small = test::street(4, 90, 2);
-  Encoder encoder = test::encoder_of({});
+  Encoder encoder = test::encoder_of({.codec = CodecId::rcpcc});
   Decoder decoder;
   PointCloud cloud;
   const test::Bytes large_frame = test::encode(encoder, large);

@@ -82,18 +82,18 @@ TEST(Encoder, OnePointComesBack) {
 TEST(Encoder, CloudsWithoutACodablePointGiveEmptyClouds) {
   PointCloud cloud;
   for (int i = 0; i < 100; ++i) add_point(cloud, kNan, kNan, kNan);
-  const Coded nan = round_trip({}, cloud);
+  const Coded nan = round_trip({.codec = CodecId::rcpcc}, cloud);
   EXPECT_EQ(nan.counts.not_finite, 100U);
   EXPECT_TRUE(nan.cloud.empty());
   PointCloud zeros;
   zeros.resize_xyz(100);
-  EXPECT_EQ(round_trip({}, zeros).counts.zero_range, 100U);
+  EXPECT_EQ(round_trip({.codec = CodecId::rcpcc}, zeros).counts.zero_range, 100U);
 }
 
 TEST(Encoder, DuplicatesCountAsCollided) {
   PointCloud cloud;
   for (int i = 0; i < 1000; ++i) add_point(cloud, 5, 5, 1);
-  const Coded coded = round_trip({}, cloud);
+  const Coded coded = round_trip({.codec = CodecId::rcpcc}, cloud);
   EXPECT_EQ(coded.counts.points_coded, 1U);
   EXPECT_EQ(coded.counts.collided, 999U);
 }
@@ -121,6 +121,7 @@ TEST(Encoder, ALonelyNearPointDisturbsNoOther) {
   add_point(with, 0.035, 0.035, 0.005);
   for (const int level : {0, 1, 2, 3, 4, 5}) {
     EncoderOptions options;
+    options.codec = CodecId::rcpcc;
     options.rcpcc.params = kRcpccLevels.at(static_cast<std::size_t>(level));
     const Coded a = round_trip(options, cloud);
     const Coded b = round_trip(options, with);
@@ -148,8 +149,8 @@ TEST(Encoder, PointsThatCannotBeCodedCostOnlyThemselves) {
     if (i % 991 == 0) add_point(with, 0, 0, 0);
     if (i % 983 == 0) add_point(with, 3e38, 3e38, 3e38);
   }
-  const Coded a = round_trip({}, cloud);
-  const Coded b = round_trip({}, with);
+  const Coded a = round_trip({.codec = CodecId::rcpcc}, cloud);
+  const Coded b = round_trip({.codec = CodecId::rcpcc}, with);
   EXPECT_EQ(a.cloud.x, b.cloud.x);
   EXPECT_EQ(a.cloud.y, b.cloud.y);
   EXPECT_EQ(a.cloud.z, b.cloud.z);
@@ -196,7 +197,7 @@ TEST(Encoder, LayoutOfTheCloudDoesNotMatter) {
 
 TEST(Encoder, CanBeMoved) {
   const PointCloud cloud = street(8, 200);
-  Encoder encoder = encoder_of({});
+  Encoder encoder = encoder_of({.codec = CodecId::rcpcc});
   const Bytes frame = encode(encoder, cloud);
   Encoder moved = std::move(encoder);
   EXPECT_EQ(encode(moved, cloud), frame);
@@ -242,6 +243,7 @@ TEST(Encoder, RefusesOptionsOutOfRange) {
   };
   for (const Case& c : cases) {
     EncoderOptions options;
+    options.codec = CodecId::rcpcc;
     c.change(options.rcpcc);
     const auto encoder = Encoder::create(options);
     ASSERT_FALSE(encoder.has_value()) << c.option;
@@ -250,6 +252,7 @@ TEST(Encoder, RefusesOptionsOutOfRange) {
     EXPECT_NE(encoder.error().message.find(c.range), std::string::npos) << encoder.error().message;
   }
   EncoderOptions options;
+  options.codec = CodecId::rcpcc;
   options.codec = static_cast<CodecId>(77);
   EXPECT_EQ(Encoder::create(options).error().code, ErrorCode::unsupported);
 }
@@ -260,6 +263,7 @@ TEST(Encoder, RefusesCropsOutOfOrder) {
                            Crop{5.0F, 4.0F, {}, {}}, Crop{0.0F, 0.0F, Box{0, 0, 1, 1, 1, 0}, {}},
                            Crop{0.0F, 0.0F, {}, Box{nan, 0, 0, 1, 1, 1}}}) {
     EncoderOptions options;
+    options.codec = CodecId::rcpcc;
     options.crop = crop;
     const auto encoder = Encoder::create(options);
     ASSERT_FALSE(encoder.has_value());
@@ -268,7 +272,7 @@ TEST(Encoder, RefusesCropsOutOfOrder) {
 }
 
 TEST(Encoder, RefusesCloudsAndNamesThatItCannotCode) {
-  Encoder encoder = encoder_of({});
+  Encoder encoder = encoder_of({.codec = CodecId::rcpcc});
   PointCloud cloud = street(4, 90);
   CloudView without_z = cloud;
   without_z.z = {};
@@ -287,6 +291,7 @@ TEST(Encoder, RefusesCloudsAndNamesThatItCannotCode) {
 
 TEST(Encoder, RefusesAnImageThatWouldBeTooLarge) {
   EncoderOptions options;
+  options.codec = CodecId::rcpcc;
   options.rcpcc.params.azimuth_step_deg = options.rcpcc.params.elevation_step_deg = 0.05;
   Encoder encoder = encoder_of(options);
   PointCloud cloud;

@@ -157,7 +157,8 @@ TEST(Frame, SizesBeyondTheirCapsAreRefused) {
 }
 
 TEST(Frame, EverySingleFlippedByteIsFound) {
-  const Bytes frame = test::encode({}, test::street(16, 180), {7, 8, "sensor"});
+  const Bytes frame =
+      test::encode({.codec = CodecId::rcpcc}, test::street(16, 180), {7, 8, "sensor"});
   Decoder decoder;
   Bytes damaged = frame;
   for (std::size_t i = 0; i < frame.size(); ++i) {
@@ -172,7 +173,8 @@ TEST(Frame, EverySingleFlippedByteIsFound) {
 }
 
 TEST(Frame, EveryTruncationIsFound) {
-  const Bytes frame = test::encode({}, test::street(16, 180), {7, 8, "sensor"});
+  const Bytes frame =
+      test::encode({.codec = CodecId::rcpcc}, test::street(16, 180), {7, 8, "sensor"});
   Decoder decoder;
   for (std::size_t size = 0; size < frame.size(); ++size) {
     expect_refused(decoder, Bytes(frame.begin(), frame.begin() + static_cast<std::ptrdiff_t>(size)),
@@ -181,7 +183,7 @@ TEST(Frame, EveryTruncationIsFound) {
 }
 
 TEST(Frame, WhatIsNewerIsCalledUnsupported) {
-  const Bytes frame = test::encode({}, test::street(4, 90));
+  const Bytes frame = test::encode({.codec = CodecId::rcpcc}, test::street(4, 90));
   Decoder decoder;
   PointCloud cloud;
   const auto refused = [&](std::size_t at, int value) {
@@ -211,7 +213,7 @@ TEST(Frame, OtherFilesAreNotFrames) {
 
 TEST(Frame, PointsBeyondTheDecodersLimitAreRefused) {
   const PointCloud cloud = test::street(16, 180);
-  Encoder encoder = test::encoder_of({});
+  Encoder encoder = test::encoder_of({.codec = CodecId::rcpcc});
   const Bytes frame = test::encode(encoder, cloud);
   const std::uint32_t points = encoder.last_counts().points_coded;
   PointCloud decoded;
@@ -224,7 +226,7 @@ TEST(Frame, PointsBeyondTheDecodersLimitAreRefused) {
 }
 
 TEST(Frame, PartsHaveNames) {
-  const Bytes frame = test::encode({}, test::street(4, 90));
+  const Bytes frame = test::encode({.codec = CodecId::rcpcc}, test::street(4, 90));
   FrameHeader header;
   ASSERT_TRUE(parse_frame_header(frame, header).has_value());
   std::string names;

@@ -39,6 +39,7 @@ std::vector<Mean> means_of_all_rows(const std::vector<std::filesystem::path>& sw
   std::vector<Encoder> encoders;
   for (const Row& row : kReleased) {
     EncoderOptions options;
+    options.codec = CodecId::rcpcc;
     options.rcpcc.params = row.params;
     encoders.push_back(test::encoder_of(options));
   }
@@ -80,7 +81,7 @@ TEST(RealSweeps, EveryPointIsAccountedFor) {
     const auto sweeps = lab::real_sweeps(folder);
     if (sweeps.empty()) GTEST_SKIP() << "set SWEEPCAST_DATA to a folder with " << folder;
     const PointCloud cloud = lab::read_kitti(sweeps.front());
-    Encoder encoder = test::encoder_of({});
+    Encoder encoder = test::encoder_of({.codec = CodecId::rcpcc});
     const test::Bytes frame = test::encode(encoder, cloud);
     const SweepCounts& counts = encoder.last_counts();
     EXPECT_EQ(counts.points_in, cloud.size());

@@ -44,6 +44,7 @@ inline std::vector<EncoderOptions> all_options() {
   std::vector<EncoderOptions> all;
   const auto add = [&](auto change) {
     EncoderOptions options;
+    options.codec = CodecId::rcpcc;
     change(options.rcpcc);
     all.push_back(options);
   };

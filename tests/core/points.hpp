@@ -16,7 +16,8 @@ inline void add_point(PointCloud& cloud, double x, double y, double z) {
 
 /// What became of the points that came in; their number, if none was forgotten.
 inline std::uint32_t sum_without_input(const SweepCounts& c) {
-  return c.points_coded + c.not_finite + c.zero_range + c.cropped + c.out_of_view + c.collided;
+  return c.points_coded + c.not_finite + c.zero_range + c.cropped + c.out_of_view + c.collided +
+         c.thinned;
 }
 
 }  // namespace sweepcast::test

@@ -23,6 +23,7 @@ inline std::vector<GoldenSource> golden_sources() {
   std::vector<GoldenSource> sources;
   const auto add = [&](const char* name, const PointCloud& cloud, auto change) {
     EncoderOptions options;
+    options.codec = CodecId::rcpcc;
     change(options.rcpcc);
     sources.push_back({name, options, cloud});
   };

@@ -134,6 +134,7 @@ TEST_F(Bench, RefusesToMeasureNothing) {
 
 TEST_F(Bench, MeasuresOurCodec) {
   EncoderOptions options;
+  options.codec = CodecId::rcpcc;
   options.rcpcc.params = kRcpccLevels[0];
   Peers peers;
   auto peer = make_sweepcast_peer(options, "L0");
@@ -149,6 +150,7 @@ TEST_F(Bench, MeasuresOurCodec) {
 
 TEST(SweepcastPeer, RefusesOptionsThatTheEncoderRefuses) {
   EncoderOptions options;
+  options.codec = CodecId::rcpcc;
   options.rcpcc.params.azimuth_step_deg = -1.0;
   const auto peer = make_sweepcast_peer(options, "wrong");
   ASSERT_FALSE(peer);

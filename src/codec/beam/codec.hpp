@@ -15,7 +15,9 @@
 #include "codec/beam/octree.hpp"
 #include "codec/beam/point_order.hpp"
 #include "codec/beam/range_layers.hpp"
+#include "codec/beam/sweep_imager.hpp"
 #include "codec/frame_layout.hpp"
+#include "rate/byte_budget.hpp"
 #include "sensor/beam_grid.hpp"
 #include "sweepcast/cloud.hpp"
 #include "sweepcast/encoder.hpp"
@@ -41,53 +43,43 @@ enum class Part : std::uint8_t {
 
 [[nodiscard]] Status check(const BeamOptions& options);
 
-/// Cells that an image of a sweep of so many points may have; a sweep that would need more has no
-/// image. So a decoder allocates no more than a few hundred bytes for each point announced.
-[[nodiscard]] constexpr std::size_t most_cells(std::size_t points) {
-  return std::min((std::size_t{1} << 20) + 16 * points, std::size_t{1} << 24);
-}
-
 /// Makes parts of sweeps; keeps its buffers, and the sensor's model from sweep to sweep.
 class Encoder {
  public:
   /// Options must have passed `check`.
   Encoder(const BeamOptions& options, const Crop& crop);
 
-  /// Fills `parts` and `counts`. Every finite point with a range decodes within the error bound.
-  void encode(const CloudView& cloud, PartList& parts, SweepCounts& counts);
+  /// Fills `parts` and `counts`. Unless thinned, every finite point with a range decodes within the
+  /// error bound. Error: limit (the sweep does not fit the bytes that options allow).
+  [[nodiscard]] Status encode(const CloudView& cloud, const SweepInfo& info, PartList& parts,
+                              SweepCounts& counts);
 
  private:
-  void learn_model(const CloudView& cloud);
-  void project(const CloudView& cloud, SweepCounts& counts);
-  void choose(SweepCounts& counts);
-  void list_as_extras();
-  void keep_bound();
+  [[nodiscard]] double error_m() const { return quality_.step_m[0] / 2.0; }
+  [[nodiscard]] Status fit_budget(const CloudView& cloud, const SweepInfo& info, PartList& parts,
+                                  SweepCounts& counts);
+  void write_sweep(const CloudView& cloud, PartList& parts, SweepCounts& counts);
   void plan_layers();
   void write_model_part(PartList& parts);
   void write_grid(PartList& parts);
+  void gather_extras(SweepCounts& counts);
   void write_extras(PartList& parts, SweepCounts& counts);
   void write_layers(PartList& parts, SweepCounts& counts);
   [[nodiscard]] std::vector<std::int32_t> take_decoded();
+  void give_back();
   void write_exact_part(std::span<const std::int32_t> ranges, PartList& parts);
 
   BeamOptions options_;
-  Crop crop_;
-  std::optional<SensorModel> model_;
-  std::optional<Motion> motion_;  ///< of the last sweep, where sweeps come deskewed
-  int sweeps_to_wait_ = 0;        ///< before looking for a model again
-  int patience_ = 4;
-  std::optional<BeamProjector> projector_;
-  std::optional<BeamUnprojector> unprojector_;
+  SweepImager imager_;
+  BeamQuality quality_;
+  std::optional<ByteBudget> budget_;
+  std::optional<std::uint32_t> sent_model_;  ///< id of the model that the decoder has
   int frames_since_model_ = 0;
-  std::uint32_t model_id_ = 0;
-  std::vector<float> x_, y_, z_;       ///< of the cloud
-  std::vector<std::uint32_t> chosen_;  ///< points that the crop leaves, where it takes any
-  BeamImage image_;
   PointCloud placed_;
   LayerPlan plan_;
   std::vector<std::int32_t> range_, azimuth_, height_;  ///< the image, columns aligned by azimuth
   LayerCoder layers_;
-  std::vector<LatticePoint> lattice_;
+  std::vector<LatticePoint> lattice_;        ///< points without a cell
   std::vector<std::uint32_t> extra_points_;  ///< of `lattice_`, indices into the cloud
   AttributeEncoder attributes_;
 };
@@ -95,11 +87,12 @@ class Encoder {
 /// Makes clouds of frames; keeps the sensor models that it has seen.
 class Decoder {
  public:
-  /// Fills `cloud` from a frame whose head is parsed, from its first `layers` layers.
+  /// Fills `cloud` from a frame whose head is parsed, from its first `layers` layers. `fill`: what
+  /// was left out is appended as interpolation has it, and marked.
   /// Errors: truncated, corrupt, limit, unsupported (the frame's model came with an earlier frame
   /// that this decoder has not seen).
   [[nodiscard]] Status decode(std::span<const std::byte> frame, const FrameHeader& header,
-                              int layers, PointCloud& cloud);
+                              int layers, bool fill, PointCloud& cloud);
 
  private:
   [[nodiscard]] Status read_model_part(std::span<const std::byte> frame, const FrameHeader& header);
@@ -110,6 +103,7 @@ class Decoder {
   [[nodiscard]] Status read_exact_part(std::span<const std::byte> frame, const FrameHeader& header);
   [[nodiscard]] Status read_slots(std::span<const std::byte> frame, const FrameHeader& header);
   void assemble(PointCloud& cloud);
+  void append_filled(PointCloud& cloud);
 
   SensorModel model_;
   std::optional<std::uint32_t> model_id_;

@@ -44,7 +44,7 @@ std::string_view part_name(std::uint8_t kind) noexcept {
 
 // The same way back.
 Status Decoder::decode(std::span<const std::byte> frame, const FrameHeader& header, int layers,
-                       PointCloud& cloud) {
+                       bool fill, PointCloud& cloud) {
   cloud.clear();
   if (Status status = read_model_part(frame, header); !status) return status;
   const auto grid = checked_part(frame, header, static_cast<std::uint8_t>(Part::grid));
@@ -72,7 +72,25 @@ Status Decoder::decode(std::span<const std::byte> frame, const FrameHeader& head
   if (Status status = read_exact_part(frame, header); !status) return status;
   if (Status status = read_slots(frame, header); !status) return status;
   assemble(cloud);
+  if (fill && image_.cols > 0) append_filled(cloud);
   return {};
+}
+
+// Appends the points that were left out, as interpolation has them.
+void Decoder::append_filled(PointCloud& cloud) {
+  for_each_aligned(model_, image_, [&](int /*row*/, std::size_t cell, std::size_t aligned) {
+    image_.range[cell] = state_[aligned] == CellState::filled ? range_[aligned] : 0;
+  });
+  unprojector_->unproject(image_, placed_);
+  cloud.filled.assign(cloud.size(), 0);
+  cloud.x.insert(cloud.x.end(), placed_.x.begin(), placed_.x.end());
+  cloud.y.insert(cloud.y.end(), placed_.y.begin(), placed_.y.end());
+  cloud.z.insert(cloud.z.end(), placed_.z.begin(), placed_.z.end());
+  cloud.filled.resize(cloud.size(), 1);
+  if (cloud.has_intensity()) cloud.intensity.resize(cloud.size());
+  if (cloud.has_ring()) cloud.ring.resize(cloud.size());
+  if (cloud.has_time()) cloud.time_ns.resize(cloud.size());
+  if (!placed_.empty()) cloud.width = 0;
 }
 
 // A coarser sweep, or one whose exact part is cut off, stays as near as its bound says.

@@ -154,6 +154,7 @@ struct LayerCoder::State {
   std::vector<std::int32_t> truth;  ///< of a run
   std::vector<std::int32_t> near;   ///< of a run
 
+  [[nodiscard]] bool has_fresh() const { return stride < plan.lattice.front().col_stride; }
   template <class Coder, class Steps>
   void code_step(Coder& coder_of_bits, Steps& steps, std::uint32_t number, LayerQuality quality,
                  const std::int32_t* range);
@@ -293,6 +294,14 @@ bool LayerCoder::decode(int layer, std::span<const std::byte> bytes,
   return !coder.overran();
 }
 
+std::size_t LayerCoder::measured() const {
+  const auto count = [](const Plane& plane) {
+    return std::count(plane.state.begin(), plane.state.end(), CellState::measured);
+  };
+  return static_cast<std::size_t>(count(state_->known) +
+                                  (state_->has_fresh() ? count(state_->fresh) : 0));
+}
+
 void LayerCoder::read(std::vector<std::int32_t>& range, std::vector<CellState>& state) const {
   const State& s = *state_;
   const auto cols = static_cast<std::size_t>(s.plan.cols);
@@ -308,7 +317,7 @@ void LayerCoder::read(std::vector<std::int32_t>& range, std::vector<CellState>& 
       }
     }
   };
-  const bool between = s.fresh.rows() > 0 && s.stride < s.plan.lattice.front().col_stride;
+  const bool between = s.has_fresh();
   const auto every = static_cast<std::size_t>(s.stride);
   scatter(s.known, 0, between ? 2 * every : every);
   if (between) scatter(s.fresh, every, 2 * every);

@@ -1,6 +1,7 @@
 // Range images as layers, coarsest first: each is a range-coded piece of bytes that adds cells.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -12,6 +13,12 @@
 #include "sweepcast/encoder.hpp"
 
 namespace sweepcast::beam {
+
+/// Cells that an image of a sweep of so many points may have; a sweep that would need more has no
+/// image. So a decoder allocates no more than a few hundred bytes for each point announced.
+[[nodiscard]] constexpr std::size_t most_cells(std::size_t points) {
+  return std::min((std::size_t{1} << 20) + 16 * points, std::size_t{1} << 24);
+}
 
 /// How well a layer is coded.
 struct LayerQuality {
@@ -60,6 +67,9 @@ class LayerCoder {
   /// them. False where the bytes end too early to be right.
   [[nodiscard]] bool decode(int layer, std::span<const std::byte> bytes,
                             const LayerResiduals& residuals);
+
+  /// Measured points of the layers so far.
+  [[nodiscard]] std::size_t measured() const;
 
   /// The image after the layers so far, rows x cols: ranges, 0 where there is none, and states.
   void read(std::vector<std::int32_t>& range, std::vector<CellState>& state) const;
