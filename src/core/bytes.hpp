@@ -44,7 +44,7 @@ class ByteWriter {
   /// A length as one byte, then that many bytes. The caller ensures at most 255.
   void put_text(std::string_view text) {
     put(static_cast<std::uint8_t>(text.size()));
-    put_bytes(std::as_bytes(std::span(text)));
+    put_bytes(std::as_bytes(std::span(text.data(), text.size())));
   }
 
  private:
