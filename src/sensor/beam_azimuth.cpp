@@ -192,8 +192,8 @@ class LagFinder {
     std::vector<std::size_t> beams(beams_.size());
     for (std::size_t k = 0; k < beams.size(); ++k) beams[k] = k;
     const auto& own = ticks_.front();
-    std::sort(beams.begin(), beams.end(),
-              [&](std::size_t a, std::size_t b) { return own[a].size() > own[b].size(); });
+    std::stable_sort(beams.begin(), beams.end(),
+                     [&](std::size_t a, std::size_t b) { return own[a].size() > own[b].size(); });
     return beams;
   }
 
@@ -224,8 +224,8 @@ std::span<const int> encoder_ticks() {
 
 int find_ticks(std::span<const BeamSamples> sweeps, std::size_t beams) {
   auto samples = by_beam(sweeps, beams);
-  std::sort(samples.begin(), samples.end(),
-            [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  std::stable_sort(samples.begin(), samples.end(),
+                   [](const auto& a, const auto& b) { return a.size() > b.size(); });
   samples.resize(std::min<std::size_t>(samples.size(), 5));
   for (auto& beam : samples) beam = thinned(beam, 1500);
   std::array<double, kEncoders.size()> errors{};

@@ -204,8 +204,8 @@ std::vector<BeamLine> find_beam_lines(const Profile& points, const LineSearch& s
       break;
     }
   }
-  std::sort(lines.begin(), lines.end(),
-            [](const BeamLine& a, const BeamLine& b) { return a.tan > b.tan; });
+  std::stable_sort(lines.begin(), lines.end(),
+                   [](const BeamLine& a, const BeamLine& b) { return a.tan > b.tan; });
   return lines;
 }
 

@@ -124,7 +124,7 @@ std::optional<MotionVector> MotionFitter::settle(int max_beams, MotionVector mot
 int MotionFitter::find_ticks() {
   std::vector<std::size_t> order(own_.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return beam_[a] != beam_[b] ? beam_[a] < beam_[b] : time_[a] < time_[b];
   });
   std::vector<double> steps;
@@ -168,8 +168,9 @@ void MotionFitter::find_yaw(int ticks_per_turn, const SensorModel* model, double
   }
   std::vector<std::size_t> order(samples.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return samples[a].size() > samples[b].size(); });
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return samples[a].size() > samples[b].size();
+  });
   order.resize(std::min(order.size(), kBeams));
   const double turned = motion[5];  // already undone
   const auto coherence = [&](double yaw) {

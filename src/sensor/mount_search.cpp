@@ -114,8 +114,8 @@ std::vector<Candidate> coarse(std::span<const Point> points, double bin) {
       }
     }
   }
-  std::sort(all.begin(), all.end(),
-            [](const Candidate& a, const Candidate& b) { return a.contrast > b.contrast; });
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.contrast > b.contrast; });
   return all;
 }
 

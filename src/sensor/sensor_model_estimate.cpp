@@ -89,8 +89,8 @@ void order_lines(std::vector<BeamLine>& lines, std::size_t min_support) {
   lines.erase(std::remove_if(lines.begin(), lines.end(),
                              [&](const BeamLine& line) { return line.support < min_support; }),
               lines.end());
-  std::sort(lines.begin(), lines.end(),
-            [](const BeamLine& a, const BeamLine& b) { return a.tan > b.tan; });
+  std::stable_sort(lines.begin(), lines.end(),
+                   [](const BeamLine& a, const BeamLine& b) { return a.tan > b.tan; });
 }
 
 // Beams and the points of each.

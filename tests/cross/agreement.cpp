@@ -72,7 +72,8 @@ void print_file(const char* path) {
   const std::string text{std::istreambuf_iterator<char>(in), {}};
   const std::string whole(path);
   Decoder decoder;
-  print_decoded(whole.substr(whole.find_last_of('/') + 1), std::as_bytes(std::span(text.data(), text.size())), decoder);
+  print_decoded(whole.substr(whole.find_last_of('/') + 1),
+                std::as_bytes(std::span(text.data(), text.size())), decoder);
 }
 
 }  // namespace

@@ -63,8 +63,8 @@ inline PointCloud made_sweep(const MadeSweep& make) {
     const double azimuth = 2.0 * kPi * turns + (beam % 4) * kDegree;
     const SinCos around = sin_cos(azimuth);
     const auto size = [](double v) { return v < 0 ? -v : v; };
-    const double wall_x = (around.cos > 0 ? 14.0 + make.shift_m : 14.0 - make.shift_m) /
-                          (size(around.cos) + 1e-3);
+    const double wall_x =
+        (around.cos > 0 ? 14.0 + make.shift_m : 14.0 - make.shift_m) / (size(around.cos) + 1e-3);
     const double wall_y = 9.0 / (size(around.sin) + 1e-3);
     double rho = wall_x < wall_y ? wall_x : wall_y;
     if (firing * 36 / make.firings % 6 == 2 && rho > 4.5) rho = 4.5;
