@@ -39,7 +39,7 @@ inline std::vector<CrossCase> cross_cases() {
   add("fine", plain, [](BeamOptions& o) { o.max_error_m = 0.002; });
   add("coarse", plain, [](BeamOptions& o) { o.max_error_m = 0.5; });
   add("jitter", two_sweeps({.seed = 5, .jitter_deg = 0.2}), [](BeamOptions&) {});
-  add("deskewed", two_sweeps({.beams = 32, .firings = 480, .seed = 7, .deskewed = true}),
+  add("deskewed", two_sweeps({.beams = 24, .firings = 360, .seed = 7, .deskewed = true}),
       [](BeamOptions& o) { o.max_error_m = 0.02; });
 
   const auto rich = two_sweeps({.seed = 9, .second_returns = 9, .attributes = true});
@@ -58,7 +58,7 @@ inline std::vector<CrossCase> cross_cases() {
       [](BeamOptions& o) { o.keep_order = true; });
   add("organised", two_sweeps({.seed = 13, .organised = true}),
       [](BeamOptions& o) { o.keep_order = true; });
-  add("octree", {made_scatter(2000, 3), made_scatter(1000, 4)}, [](BeamOptions&) {});
+  add("octree", {made_scatter(300, 3), made_scatter(200, 4)}, [](BeamOptions&) {});
   add("empty", {PointCloud{}}, [](BeamOptions&) {});
 
   CrossCase range_image{"rcpcc", {}, plain};

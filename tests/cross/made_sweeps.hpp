@@ -8,9 +8,7 @@
 #include <random>
 
 #include "core/trig.hpp"
-#include "sensor/motion.hpp"
 #include "sweepcast/cloud.hpp"
-#include "sweepcast/sensor_model.hpp"
 
 namespace sweepcast::test {
 
@@ -33,7 +31,7 @@ inline double unit(std::mt19937& random) {
   return static_cast<double>(random()) / 4294967296.0;
 }
 
-/// The sensor's own place, undoing `motion`'s twist by fixed-point iteration.
+/// A point deskewed, `turns` of the sensor from the sweep's middle.
 inline std::array<double, 3> moved(const std::array<double, 3>& p, double turns) {
   // 0.8 m ahead and 2 degrees to the left in a turn of the sensor.
   const SinCos turn = sin_cos(2.0 * kDegree * turns);
@@ -56,11 +54,11 @@ inline PointCloud made_sweep(const MadeSweep& make) {
     cloud.time_ns.push_back(std::int64_t{100'000'000} * firing / make.firings + 2'304 * beam);
   };
   const auto measure = [&](int beam, int firing) {
-    const bool outer = make.by_rings || make.organised;
-    const double turns = static_cast<double>(outer ? firing : firing) / make.firings - 0.5;
+    const double turns = static_cast<double>(firing) / make.firings - 0.5;
     const SinCos up = sin_cos((10.0 - 30.0 * beam / (make.beams - 1)) * kDegree);
     const double tangent = up.sin / up.cos;
-    const double azimuth = 2.0 * kPi * turns + (beam % 4) * kDegree;
+    const double offset_deg = make.deskewed ? 0.0 : beam % 4;
+    const double azimuth = 2.0 * kPi * turns + offset_deg * kDegree;
     const SinCos around = sin_cos(azimuth);
     const auto size = [](double v) { return v < 0 ? -v : v; };
     const double wall_x =
