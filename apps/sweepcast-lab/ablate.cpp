@@ -1,4 +1,5 @@
-// `sweepcast ablate`: the paper's ablation tables, with its figures beside ours.
+// `sweepcast ablate`: the paper's ablation tables, with its figures beside ours, and those of our
+// own stages.
 #include "lab/ablate.hpp"
 
 #include <fmt/core.h>
@@ -15,6 +16,8 @@
 #include "common/distortion_report.hpp"
 #include "common/inputs.hpp"
 #include "common/progress.hpp"
+#include "common/validators.hpp"
+#include "lab/ablate_beam.hpp"
 #include "sweepcast-lab/commands.hpp"
 
 namespace sweepcast::app {
@@ -27,6 +30,8 @@ using lab::UnfitRow;
 struct AblateCommand {
   std::vector<std::string> inputs;
   std::vector<double> steps{0.5, 0.5};
+  std::string codec = "rcpcc";
+  double max_error_m = 0.05;
   std::string quantiser = "nearest";
   double threshold_m = 0.3;
   RcpccOptions rcpcc;
@@ -100,6 +105,46 @@ void report_text(const lab::Ablation& tables, const AblateCommand& options,
       sweep_count, options.steps[0], options.steps[1], options.quantiser);
 }
 
+void report_stages_json(const std::vector<lab::StageRow>& rows) {
+  nlohmann::ordered_json report{{"stages", nlohmann::ordered_json::array()}};
+  for (const lab::StageRow& row : rows) {
+    report["stages"].push_back({{"without", row.stage},
+                                {"instead", row.instead},
+                                {"bytes", row.bytes},
+                                {"factor", row.factor}});
+  }
+  print_json(report);
+}
+
+void report_stages_text(const std::vector<lab::StageRow>& rows, std::size_t sweep_count,
+                        double max_error_m) {
+  fmt::print("{:20} {:45} {:>8} {:>7}\n", "without", "instead", "bytes", "factor");
+  for (const lab::StageRow& row : rows) {
+    fmt::print("{:20} {:45} {:>8.0f} {:>7.3f}\n", row.stage.empty() ? "-" : row.stage, row.instead,
+               row.bytes, row.factor);
+  }
+  fmt::print(
+      "Bytes of a frame, mean over {} sweeps, geometry only; bound {:g} m but for level 4.\n",
+      sweep_count, max_error_m);
+}
+
+Status ablate_stages(const AblateCommand& options) {
+  const auto sweeps = collect_clouds(options.inputs);
+  if (!sweeps) return tl::unexpected(sweeps.error());
+  lab::StageAblationOptions ablation;
+  ablation.max_error_m = options.max_error_m;
+  Progress progress("measuring", sweeps->size());
+  ablation.on_sweep = [&progress](std::string_view name) { progress.step(name); };
+  const auto rows = lab::ablate_stages(*sweeps, ablation);
+  if (!rows) return tl::unexpected(rows.error());
+  if (options.json) {
+    report_stages_json(*rows);
+  } else {
+    report_stages_text(*rows, sweeps->size(), options.max_error_m);
+  }
+  return {};
+}
+
 /// What all rows of the tables share.
 RcpccOptions base_of(const AblateCommand& options) {
   RcpccOptions base = options.rcpcc;
@@ -133,6 +178,12 @@ void add_ablate(CLI::App& app, Command& command) {
   CLI::App* sub = app.add_subcommand("ablate", "Measure what each of the method's ideas is worth");
   sub->add_option("INPUT", options->inputs, "Clouds (.bin, .pcd, .ply), or folders of them")
       ->required();
+  sub->add_option("--codec", options->codec,
+                  "rcpcc: the paper's tables; beam: bytes without each of its stages [rcpcc]")
+      ->check(CLI::IsMember({"rcpcc", "beam"}));
+  sub->add_option("--max-error", options->max_error_m, "Codec beam: bound in metres [0.05]")
+      ->check(number_between(0.001, 2.0))
+      ->type_name("METRES");
   sub->add_option("--params", options->steps, "Steps of the range image in degrees [0.5,0.5]")
       ->delimiter(',')
       ->expected(2)
@@ -155,7 +206,8 @@ void add_ablate(CLI::App& app, Command& command) {
     encoder.codec = CodecId::rcpcc;
     encoder.rcpcc = base_of(*options);
     require_valid(encoder);
-    command = [options] { return ablate(*options); };
+    const bool beam = options->codec == "beam";
+    command = [options, beam] { return beam ? ablate_stages(*options) : ablate(*options); };
   });
 }
 

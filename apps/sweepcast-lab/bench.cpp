@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -18,13 +17,10 @@
 #include "common/distortion_report.hpp"
 #include "common/inputs.hpp"
 #include "common/progress.hpp"
-#include "common/validators.hpp"
 #include "io/file.hpp"
-#include "lab/peers/draco.hpp"
-#include "lab/peers/sweepcast_codec.hpp"
 #include "lab/plot.hpp"
+#include "sweepcast-lab/bench_settings.hpp"
 #include "sweepcast-lab/commands.hpp"
-#include "sweepcast/ladder.hpp"
 
 namespace sweepcast::app {
 
@@ -35,128 +31,12 @@ using lab::BenchRow;
 
 struct BenchCommand {
   std::vector<std::string> inputs;
-  std::vector<std::string> codecs{"rcpcc"};
-  std::vector<std::string> levels;                                  ///< of the ladder; "all"
-  std::vector<std::string> params;                                  ///< further settings of rcpcc
-  std::vector<double> max_errors{0.01, 0.02, 0.05, 0.1, 0.2, 0.4};  ///< settings of beam, metres
-  std::vector<std::string> peers;
-  RcpccOptions rcpcc;  ///< what all settings share
+  BenchSettings settings;
   int runs = 5;
   fs::path csv;
   fs::path plot;
   bool json = false;
 };
-
-/// The paper's timing setting (section IV.D).
-constexpr std::string_view kPaperSetting = "0.5,0.5,0.3,0.2";
-
-Result<RcpccParams> parse_params(const std::string& text) {
-  std::array<double, 4> values{};
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const auto [next, error] = std::from_chars(at, end, values[i]);
-    const bool separated = i + 1 < values.size() ? next != end && *next == ',' : next == end;
-    if (error != std::errc{} || !separated) {
-      return fail(ErrorCode::invalid_argument,
-                  fmt::format("--params {}: not AZIMUTH,ELEVATION,THRESHOLD,QSTEP; give four "
-                              "numbers separated by commas",
-                              text));
-    }
-    at = next + 1;
-  }
-  return RcpccParams{values[0], values[1], values[2], values[3]};
-}
-
-/// A setting of rcpcc and its label.
-struct RcpccSetting {
-  std::string label;
-  RcpccParams params;
-};
-
-/// The chosen levels, or all of them; without any choice, all levels and the paper's setting.
-Result<std::vector<RcpccSetting>> rcpcc_settings(const BenchCommand& options) {
-  std::vector<RcpccSetting> settings;
-  std::vector<std::string> params = options.params;
-  std::vector<std::string> levels = options.levels;
-  if (levels.empty() && params.empty()) {
-    levels = {"all"};
-    params = {std::string(kPaperSetting)};
-  }
-  for (std::size_t level = 0; level < kRcpccLevels.size(); ++level) {
-    const auto wanted = [&](const std::string& word) {
-      return word == "all" || word == std::to_string(level);
-    };
-    if (std::any_of(levels.begin(), levels.end(), wanted)) {
-      settings.push_back({fmt::format("L{}", level), kRcpccLevels.at(level)});
-    }
-  }
-  for (const std::string& text : params) {
-    const auto parsed = parse_params(text);
-    if (!parsed) return tl::unexpected(parsed.error());
-    settings.push_back({text, *parsed});
-  }
-  return settings;
-}
-
-Status add_rcpcc(const BenchCommand& options, lab::Peers& peers) {
-  const auto settings = rcpcc_settings(options);
-  if (!settings) return tl::unexpected(settings.error());
-  for (const RcpccSetting& setting : *settings) {
-    EncoderOptions encoder;
-    encoder.codec = CodecId::rcpcc;
-    encoder.rcpcc = options.rcpcc;
-    encoder.rcpcc.params = setting.params;
-    auto peer = lab::make_sweepcast_peer(encoder, setting.label);
-    if (!peer) return tl::unexpected(peer.error());
-    peers.push_back(std::move(*peer));
-  }
-  return {};
-}
-
-Status add_beam(const BenchCommand& options, lab::Peers& peers) {
-  for (const double max_error : options.max_errors) {
-    EncoderOptions encoder;
-    encoder.codec = CodecId::beam;
-    encoder.beam.max_error_m = max_error;
-    auto peer = lab::make_sweepcast_peer(encoder, fmt::format("E {} m", max_error));
-    if (!peer) return tl::unexpected(peer.error());
-    peers.push_back(std::move(*peer));
-  }
-  return {};
-}
-
-Status add_draco(lab::Peers& peers) {
-  for (int bits = 8; bits <= 14; ++bits) {
-    auto peer = lab::make_draco_peer({.quantisation_bits = bits, .compression_level = 7});
-    if (!peer) return tl::unexpected(peer.error());
-    peers.push_back(std::move(*peer));
-  }
-  return {};
-}
-
-bool contains(const std::vector<std::string>& words, std::string_view word) {
-  return std::find(words.begin(), words.end(), word) != words.end();
-}
-
-/// Every codec at every setting that the command line asks for.
-Result<lab::Peers> make_peers(const BenchCommand& options) {
-  lab::Peers peers;
-  if (contains(options.codecs, "rcpcc")) {
-    if (const Status added = add_rcpcc(options, peers); !added) {
-      return tl::unexpected(added.error());
-    }
-  }
-  if (contains(options.codecs, "beam")) {
-    if (const Status added = add_beam(options, peers); !added) {
-      return tl::unexpected(added.error());
-    }
-  }
-  if (contains(options.peers, "draco")) {
-    if (const Status added = add_draco(peers); !added) return tl::unexpected(added.error());
-  }
-  return peers;
-}
 
 /// A column of the CSV file that is no figure of the distortion.
 struct Column {
@@ -164,11 +44,12 @@ struct Column {
   double BenchRow::*value;
 };
 
-constexpr std::array<Column, 6> kColumns{{
+constexpr std::array<Column, 7> kColumns{{
     {"ratio", &BenchRow::ratio},
     {"bytes", &BenchRow::bytes},
     {"points_in", &BenchRow::points_in},
     {"points_out", &BenchRow::points_out},
+    {"points_filled", &BenchRow::points_filled},
     {"encode_ms", &BenchRow::encode_ms},
     {"decode_ms", &BenchRow::decode_ms},
 }};
@@ -243,9 +124,10 @@ Status check_outputs(const BenchCommand& options) {
 Status bench(const BenchCommand& options) {
   const auto sweeps = collect_clouds(options.inputs);
   if (!sweeps) return tl::unexpected(sweeps.error());
-  const auto peers = make_peers(options);
+  auto peers = make_peers(options.settings);
   if (!peers) return tl::unexpected(peers.error());
   if (Status outputs = check_outputs(options); !outputs) return outputs;
+  if (Status added = add_bounded_peers(options.settings, *sweeps, *peers); !added) return added;
   Progress progress("measuring", sweeps->size());
   const auto on_sweep = [&progress](std::string_view name) { progress.step(name); };
   const auto rows = lab::bench(*sweeps, *peers, {.runs = options.runs, .on_sweep = on_sweep});
@@ -270,33 +152,7 @@ void add_bench(CLI::App& app, Command& command) {
       "bench", "Measure ratio, distortion and time over settings, beside other codecs");
   sub->add_option("INPUT", options->inputs, "Clouds (.bin, .pcd, .ply), or folders of them")
       ->required();
-  sub->add_option("--codec", options->codecs, "Our codecs to measure: rcpcc, beam [rcpcc]")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->check(CLI::IsMember({"rcpcc", "beam"}));
-  sub->add_option("--levels", options->levels,
-                  fmt::format("Levels of rcpcc [all, and --params {}]", kPaperSetting))
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->check(CLI::IsMember({"0", "1", "2", "3", "4", "5", "all"}));
-  sub->add_option("--params", options->params,
-                  "A setting of rcpcc: steps in degrees, threshold and quantiser step in metres; "
-                  "may be repeated")
-      ->allow_extra_args(false)
-      ->type_name("AZIMUTH,ELEVATION,THRESHOLD,QSTEP");
-  sub->add_option("--max-error", options->max_errors,
-                  "Settings of beam: largest errors in metres [0.01,0.02,0.05,0.1,0.2,0.4]")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->check(number_between(0.001, 2.0))
-      ->type_name("METRES");
-  sub->add_option("--zstd", options->rcpcc.zstd_level,
-                  fmt::format("Level of zstd for all settings [{}]", RcpccOptions{}.zstd_level))
-      ->check(CLI::Range(1, 22));
-  sub->add_option("--peers", options->peers, "Other codecs: draco (kd-tree, qp 8 to 14, cl 7)")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->check(CLI::IsMember({"draco"}));
+  add_bench_settings(*sub, options->settings);
   sub->add_option("--runs", options->runs, "Timed runs of each sweep; the median counts [5]")
       ->check(CLI::Range(1, 1000))
       ->type_name("N");
@@ -306,7 +162,7 @@ void add_bench(CLI::App& app, Command& command) {
   sub->add_flag("--json", options->json, "Print the rows as JSON");
   sub->footer("Example: sweepcast bench drive --peers draco --plot bench.png");
   sub->callback([options, &command] {
-    if (const auto peers = make_peers(*options);
+    if (const auto peers = make_peers(options->settings);
         !peers && peers.error().code == ErrorCode::invalid_argument) {
       throw CLI::ValidationError(peers.error().message);
     }

@@ -1,6 +1,7 @@
 #include "lab/bench.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <ctime>
 
 #include "sweepcast/cloud_file.hpp"
@@ -30,13 +31,17 @@ struct Trial {
 
 /// What is summed up over the sweeps for one peer.
 struct Totals {
-  double bytes = 0, points_in = 0, points_out = 0, encode_ms = 0, decode_ms = 0;
+  double bytes = 0, points_in = 0, points_out = 0, points_filled = 0;
+  double encode_ms = 0, decode_ms = 0;
   DistortionMean distortion;
 
   void add(Trial& trial, const PointCloud& cloud, const Reference& reference) {
     bytes += static_cast<double>(trial.bytes);
     points_in += static_cast<double>(cloud.size());
     points_out += static_cast<double>(trial.decoded.size());
+    const auto& filled = trial.decoded.filled;
+    points_filled += static_cast<double>(
+        std::count_if(filled.begin(), filled.end(), [](std::uint8_t mark) { return mark != 0; }));
     encode_ms += median(trial.encode_ms);
     decode_ms += median(trial.decode_ms);
     distortion.add(reference.compare(trial.decoded));
@@ -51,6 +56,7 @@ struct Totals {
     row.bytes = bytes / sweeps;
     row.points_in = points_in / sweeps;
     row.points_out = points_out / sweeps;
+    row.points_filled = points_filled / sweeps;
     row.distortion = distortion.mean();
     row.encode_ms = encode_ms / sweeps;
     row.decode_ms = decode_ms / sweeps;

@@ -18,10 +18,11 @@ namespace sweepcast::lab {
 struct BenchRow {
   std::string codec;
   std::string setting;
-  double ratio = 0;       ///< 16 bytes a point over the bytes, as the paper counts
-  double bytes = 0;       ///< of an encoded sweep
-  double points_in = 0;   ///< of a sweep
-  double points_out = 0;  ///< of a decoded sweep
+  double ratio = 0;          ///< 16 bytes a point over the bytes, as the paper counts
+  double bytes = 0;          ///< of an encoded sweep
+  double points_in = 0;      ///< of a sweep
+  double points_out = 0;     ///< of a decoded sweep
+  double points_filled = 0;  ///< of these, not measured but interpolated by the decoder
   Distortion distortion;
   double encode_ms = 0;  ///< CPU time of one thread; of each sweep the median over the runs
   double decode_ms = 0;  ///< the same

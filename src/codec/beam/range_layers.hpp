@@ -10,6 +10,7 @@
 
 #include "codec/beam/lattice.hpp"
 #include "codec/beam/plane.hpp"
+#include "codec/beam/prediction.hpp"
 #include "sweepcast/encoder.hpp"
 
 namespace sweepcast::beam {
@@ -31,6 +32,7 @@ struct LayerPlan {
   int rows = 0;
   int cols = 0;
   Effort effort = Effort::normal;
+  Stages stages{};
   std::vector<LatticeStep> lattice;     ///< from the base on
   std::vector<LayerQuality> quality;    ///< of each layer; the first is never thinned
   std::vector<std::int32_t> elevation;  ///< rows values: tangent of each row's beam, falling

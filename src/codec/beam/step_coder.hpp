@@ -52,7 +52,8 @@ class StepCoder {
 
   /// Begins a step of the lattice. `step` is that of ranges, 0.1 mm. `tolerance`: groups of cells
   /// that interpolation gets as near as that may be left out, 0.1 mm; negative: none are.
-  void begin_step(std::int32_t step, std::int32_t tolerance) {
+  void begin_step(std::int32_t step, std::int32_t tolerance, const Stages& stages) {
+    stages_ = stages;
     scale_ = PredictionScale(step);
     tolerance_ = tolerance;
     residual_.soften();
@@ -68,7 +69,7 @@ class StepCoder {
     occupancy_.begin(run.states, truth);
     skipped_ = 0;
     if (!run.sequential) {
-      predict(run.neighbours, scale_, count, predictions_);
+      predict_cells(run, count);
       occupancy_.guess_all(run.states);
     }
     for (std::size_t first = 0; first < count; first += kGroup) {
@@ -83,7 +84,7 @@ class StepCoder {
         if (run.states.cell[i] != CellState::measured) continue;
         if (ran_dry(coder)) return;
         const Run cell = run.from(i);
-        predict(cell.neighbours, scale_, 1, predictions_);
+        predict_cells(cell, 1);
         code_ranges(coder, cell, 1, truth == nullptr ? nullptr : truth + i);
       }
     } else {
@@ -95,11 +96,22 @@ class StepCoder {
   static constexpr std::size_t kPicks = kResidualInputs > 1 ? 4 : 1;
   using Pick = BitMixer<kPicks>;
 
+  void predict_cells(const Run& run, std::size_t count) {
+    predict(run.neighbours, scale_, count, predictions_);
+    if (stages_.prediction) return;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::int32_t before = run.neighbours.range[Neighbours::a][i];
+      if (before > 0) predictions_.range[i] = before;
+      predictions_.carried[i] = 0;
+      predictions_.basis[i] = static_cast<std::int32_t>(before > 0 ? Basis::one : Basis::guess);
+    }
+  }
+
   template <class Coder>
   void code_ranges(Coder& coder, const Run& run, std::size_t count, const std::int32_t* truth) {
     constexpr auto kGap = static_cast<std::int32_t>(Basis::gap);
     const CellState* state = run.states.cell;
-    for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t i = 0; stages_.edges && i < count; ++i) {
       if (state[i] != CellState::measured || predictions_.basis[i] != kGap) continue;
       if (ran_dry(coder)) return;
       pick_side(coder, run, i, truth == nullptr ? 0 : truth[i]);
@@ -243,6 +255,7 @@ class StepCoder {
            (std::abs(sb - at(Neighbours::b)) < scale_.edge ? 2U : 0U);
   }
 
+  Stages stages_;
   PredictionScale scale_;
   std::int32_t tolerance_ = -1;
   std::uint32_t skipped_ = 0;  // the last groups: whether they were left out

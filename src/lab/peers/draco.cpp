@@ -4,9 +4,13 @@
 #include <draco/compression/encode.h>
 #include <draco/point_cloud/point_cloud.h>
 
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace sweepcast::lab {
 namespace {
@@ -26,6 +30,37 @@ Points finite_points(const PointCloud& cloud) {
   }
   return points;
 }
+
+/// Draco's explicit quantisation of a cloud: coordinates as whole steps from a corner.
+struct Quantisation {
+  std::array<float, 3> origin{};
+  int bits = 1;
+  float range = 0;
+
+  /// For at least one point. No bits where more than 30 would be needed.
+  Quantisation(const Points& points, double step_m) : origin(points.front()) {
+    std::array<float, 3> highest = origin;
+    for (const auto& point : points) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        origin[axis] = std::min(origin[axis], point[axis]);
+        highest[axis] = std::max(highest[axis], point[axis]);
+      }
+    }
+    double steps = 1.0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      steps = std::max(steps, (double{highest[axis]} - double{origin[axis]}) / step_m + 1.0);
+    }
+    while (bits <= kMostBits && largest() < steps) ++bits;
+    if (bits > kMostBits) bits = 0;
+    range = static_cast<float>(step_m * largest());
+  }
+
+  static constexpr int kMostBits = 30;
+
+  [[nodiscard]] double largest() const {
+    return static_cast<double>((std::int64_t{1} << bits) - 1);
+  }
+};
 
 /// At least one point, as Draco wants them.
 std::unique_ptr<draco::PointCloud> to_draco(const Points& points) {
@@ -60,8 +95,7 @@ Status failed(const draco::Status& status) {
 class DracoPeer : public Peer {
  public:
   explicit DracoPeer(const DracoOptions& options)
-      : Peer("draco-kd", "qp" + std::to_string(options.quantisation_bits) + " cl" +
-                             std::to_string(options.compression_level)) {
+      : Peer("draco-kd", setting_of(options)), step_m_(options.step_m) {
     const int speed = 10 - options.compression_level;
     encoder_.SetSpeedOptions(speed, speed);
     encoder_.SetAttributeQuantization(kPosition, options.quantisation_bits);
@@ -71,6 +105,16 @@ class DracoPeer : public Peer {
   Result<std::span<const std::byte>> encode(const PointCloud& cloud) override {
     const Points points = finite_points(cloud);
     if (points.empty()) return std::span<const std::byte>{};  // Draco refuses these
+    if (step_m_ > 0.0) {
+      const Quantisation to(points, step_m_);
+      if (to.bits == 0) {
+        return fail(ErrorCode::limit,
+                    fmt::format("draco: the cloud is too large for steps of {} m; "
+                                "allow larger errors",
+                                step_m_));
+      }
+      encoder_.SetAttributeExplicitQuantization(kPosition, to.bits, 3, to.origin.data(), to.range);
+    }
     buffer_.Clear();
     const draco::Status status = encoder_.EncodePointCloudToBuffer(*to_draco(points), &buffer_);
     if (!status.ok()) return tl::unexpected(failed(status).error());
@@ -88,6 +132,12 @@ class DracoPeer : public Peer {
   }
 
  private:
+  static std::string setting_of(const DracoOptions& options) {
+    if (options.step_m > 0.0) return fmt::format("step {} m", options.step_m);
+    return fmt::format("qp{} cl{}", options.quantisation_bits, options.compression_level);
+  }
+
+  double step_m_;
   draco::Encoder encoder_;
   draco::EncoderBuffer buffer_;
 };
@@ -101,7 +151,65 @@ Result<std::unique_ptr<Peer>> make_draco_peer(const DracoOptions& options) {
   if (options.compression_level < 0 || options.compression_level > 10) {
     return fail(ErrorCode::invalid_argument, "draco: compression level must be from 0 to 10");
   }
+  if (!(options.step_m >= 0.0 && std::isfinite(options.step_m))) {
+    return fail(ErrorCode::invalid_argument,
+                "draco: the step must be a number of metres from 0 up");
+  }
   return std::make_unique<DracoPeer>(options);
+}
+
+namespace {
+
+/// Whether no point misses its place by more than `most` (metres), else the worst error so far.
+double worst_error(const Points& points, double step_m, double most) {
+  if (points.empty()) return 0.0;
+  const Quantisation to(points, step_m);
+  if (to.bits == 0) return std::numeric_limits<double>::infinity();
+  // In Draco's own floats: draco::Quantizer and draco::Dequantizer.
+  const auto largest = static_cast<float>(to.largest());
+  const float inverse = largest / to.range;
+  const float delta = to.range / largest;
+  double worst = 0.0;
+  for (const auto& point : points) {
+    double squared = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float steps = std::floor((point[axis] - to.origin[axis]) * inverse + 0.5F);
+      const double miss = double{steps * delta + to.origin[axis]} - double{point[axis]};
+      squared += miss * miss;
+    }
+    worst = std::max(worst, squared);
+    if (worst > most * most) break;
+  }
+  return std::sqrt(worst);
+}
+
+}  // namespace
+
+double draco_worst_error(const PointCloud& cloud, double step_m) {
+  return worst_error(finite_points(cloud), step_m, std::numeric_limits<double>::infinity());
+}
+
+Result<double> coarsest_draco_step(std::span<const PointCloud> clouds, double max_error_m) {
+  if (!(max_error_m >= 0.001 && max_error_m <= 2.0)) {
+    return fail(ErrorCode::invalid_argument,
+                "draco: the largest error must lie between 0.001 and 2 m");
+  }
+  std::vector<Points> sweeps;
+  sweeps.reserve(clouds.size());
+  for (const PointCloud& cloud : clouds) sweeps.push_back(finite_points(cloud));
+  constexpr double kUnits = 1e5;  // a step is whole 10 um
+  const double safe = 2.0 / std::sqrt(3.0) * max_error_m * kUnits;
+  const std::int64_t less = std::max<std::int64_t>(1, std::llround(safe / 1000.0));
+  for (auto step = std::llround(1.1 * safe); 2.0 * static_cast<double>(step) > safe; step -= less) {
+    const double step_m = static_cast<double>(step) / kUnits;
+    const auto holds = [&](const Points& points) {
+      return worst_error(points, step_m, max_error_m) <= max_error_m;
+    };
+    if (std::all_of(sweeps.begin(), sweeps.end(), holds)) return step_m;
+  }
+  return fail(ErrorCode::limit, fmt::format("draco: no step keeps every point within {} m; allow "
+                                            "larger errors, or leave far points out",
+                                            max_error_m));
 }
 
 }  // namespace sweepcast::lab

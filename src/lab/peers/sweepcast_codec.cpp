@@ -7,8 +7,11 @@ namespace {
 
 class SweepcastPeer : public Peer {
  public:
-  SweepcastPeer(std::string codec, std::string setting, Encoder encoder)
-      : Peer(std::move(codec), std::move(setting)), encoder_(std::move(encoder)) {}
+  SweepcastPeer(std::string codec, std::string setting, Encoder encoder,
+                const DecoderOptions& decoder)
+      : Peer(std::move(codec), std::move(setting)),
+        encoder_(std::move(encoder)),
+        decoder_(decoder) {}
 
   Result<std::span<const std::byte>> encode(const PointCloud& cloud) override {
     return encoder_.encode(cloud, SweepInfo{});
@@ -26,7 +29,8 @@ class SweepcastPeer : public Peer {
 }  // namespace
 
 Result<std::unique_ptr<Peer>> make_sweepcast_peer(const EncoderOptions& options,
-                                                  std::string setting) {
+                                                  std::string setting,
+                                                  const DecoderOptions& decoder) {
   EncoderOptions geometry_only = options;
   geometry_only.beam.fields = Fields::xyz;
   geometry_only.beam.keep_order = false;
@@ -34,7 +38,7 @@ Result<std::unique_ptr<Peer>> make_sweepcast_peer(const EncoderOptions& options,
   auto encoder = Encoder::create(geometry_only);
   if (!encoder) return tl::unexpected(std::move(encoder.error()));
   return std::make_unique<SweepcastPeer>(std::string(name(options.codec)), std::move(setting),
-                                         std::move(*encoder));
+                                         std::move(*encoder), decoder);
 }
 
 }  // namespace sweepcast::lab
