@@ -24,6 +24,23 @@ double cost(double error, double scale) {
   return e / (1.0 + e);
 }
 
+// The fewest ticks a turn of which stretched steps are as good as whole multiples, best for any;
+// 0 where none is as coherent as `least`.
+int ticks_of(const std::vector<double>& steps, double stretch, double least) {
+  std::vector<double> coherence;
+  for (const int ticks : encoder_ticks()) {
+    double sum = 0.0;
+    for (const double step : steps) sum += unit_phasor(wrap(step * stretch * ticks)).cos;
+    coherence.push_back(sum / static_cast<double>(steps.size()));
+  }
+  const double best = *std::max_element(coherence.begin(), coherence.end());
+  if (best < least) return 0;
+  for (std::size_t c = 0; c < coherence.size(); ++c) {
+    if (coherence[c] > 0.95 * best) return encoder_ticks()[c];
+  }
+  return 0;
+}
+
 }  // namespace
 
 // From lines that are blurred to crisp ones.
@@ -138,18 +155,15 @@ int MotionFitter::find_ticks() {
     }
   }
   if (steps.size() < 200) return 0;
-  std::vector<double> coherence;
-  for (const int ticks : encoder_ticks()) {
-    double sum = 0.0;
-    for (const double step : steps) sum += unit_phasor(wrap(step * ticks)).cos;
-    coherence.push_back(sum / static_cast<double>(steps.size()));
+  // A fast turn about z stretches steps so much that fewer ticks seem to fit them; slow ones first.
+  constexpr double kStretch = 0.002;
+  constexpr int kMost = static_cast<int>(kMaxYaw / kTurn / kStretch);
+  for (int n = 0; n <= kMost; ++n) {
+    for (const double stretch : {1.0 + n * kStretch, 1.0 - n * kStretch}) {
+      if (const int ticks = ticks_of(steps, stretch, 0.9); ticks != 0) return ticks;
+    }
   }
-  const double best = *std::max_element(coherence.begin(), coherence.end());
-  if (best < 0.5) return 0;
-  for (std::size_t c = 0; c < coherence.size(); ++c) {
-    if (coherence[c] > 0.9 * best) return encoder_ticks()[c];
-  }
-  return 0;
+  return ticks_of(steps, 1.0, 0.5);
 }
 
 void MotionFitter::find_yaw(int ticks_per_turn, const SensorModel* model, double centre,

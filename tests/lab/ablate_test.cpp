@@ -5,8 +5,10 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <string>
 #include <vector>
 
+#include "lab/ablate_beam.hpp"
 #include "lab/real_sweeps.hpp"
 
 namespace sweepcast::lab {
@@ -132,6 +134,61 @@ TEST(Ablate, RefusesNoSweepsAndWrongOptions) {
   const auto absent = ablate(std::vector<std::filesystem::path>{"absent.bin"}, {});
   ASSERT_FALSE(absent);
   EXPECT_EQ(absent.error().code, ErrorCode::not_found);
+}
+
+TEST(AblateStages, RefusesNoSweepsAndWrongOptions) {
+  const auto none = ablate_stages({}, {});
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().code, ErrorCode::invalid_argument);
+  const auto absent = ablate_stages(std::vector<std::filesystem::path>{"absent.bin"}, {});
+  ASSERT_FALSE(absent);
+  EXPECT_EQ(absent.error().code, ErrorCode::not_found);
+}
+
+/// Bytes of the stage that is left out, over those of all stages.
+double factor_without(const std::vector<StageRow>& rows, const std::string& stage) {
+  for (const StageRow& row : rows) {
+    if (row.stage == stage) return row.factor;
+  }
+  ADD_FAILURE() << "no stage " << stage;
+  return 0.0;
+}
+
+TEST(AblateStages, EveryStageIsWorthItsPlaceOnARealSweep) {
+  auto sweeps = real_sweeps("kitti_hdl64");
+  if (sweeps.empty()) GTEST_SKIP() << "set SWEEPCAST_DATA to a folder with kitti_hdl64";
+  sweeps.resize(1);
+  const auto rows = ablate_stages(sweeps, {});
+  ASSERT_TRUE(rows) << rows.error().message;
+  EXPECT_TRUE(rows->front().stage.empty());
+  EXPECT_EQ(rows->front().factor, 1.0);
+  for (const StageRow& row : *rows) {
+    if (row.stage.empty()) continue;
+    EXPECT_GT(row.factor, 1.02) << row.stage << ": " << row.instead;
+  }
+  EXPECT_GT(factor_without(*rows, "grid"), 2.0);
+  EXPECT_GT(factor_without(*rows, "prediction"), 1.1);
+}
+
+/// The stages are measured on the bytes that the encoder writes, coded a second time.
+TEST(AblateStages, MixingIsWhatTheEncoderSavesByIt) {
+  auto sweeps = real_sweeps("kitti_hdl64");
+  if (sweeps.empty()) GTEST_SKIP() << "set SWEEPCAST_DATA to a folder with kitti_hdl64";
+  sweeps.resize(1);
+  const auto rows = ablate_stages(sweeps, {});
+  ASSERT_TRUE(rows) << rows.error().message;
+  EncoderOptions options;
+  options.codec = CodecId::beam;
+  options.beam.fields = Fields::xyz;
+  options.beam.effort = Effort::fast;
+  auto encoder = Encoder::create(options);
+  ASSERT_TRUE(encoder) << encoder.error().message;
+  const auto frame = encoder->encode(read_kitti(sweeps[0]), SweepInfo{});
+  ASSERT_TRUE(frame) << frame.error().message;
+  for (const StageRow& row : *rows) {
+    if (row.stage != "mixing") continue;
+    EXPECT_EQ(row.bytes, static_cast<double>(frame->size()));
+  }
 }
 
 /// The paper's setting; its threshold of the second table is 0.3 m as far as one can tell.

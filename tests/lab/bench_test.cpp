@@ -148,6 +148,27 @@ TEST_F(Bench, MeasuresOurCodec) {
   EXPECT_LT(rows->at(0).distortion.mean_d2o, 0.2);
 }
 
+TEST_F(Bench, CountsFilledPoints) {
+  class FillingPeer : public KnownPeer {
+   public:
+    using KnownPeer::KnownPeer;
+    Status decode(std::span<const std::byte> bytes, PointCloud& cloud) override {
+      Status decoded = KnownPeer::decode(bytes, cloud);
+      cloud.filled.assign(cloud.size(), 0);
+      for (std::size_t i = 0; i < cloud.size(); i += 4) cloud.filled[i] = 1;
+      return decoded;
+    }
+  };
+  Peers peers;
+  peers.push_back(std::make_unique<FillingPeer>("fill", 1, 0.0F, calls_));
+  peers.push_back(std::make_unique<KnownPeer>("plain", 1, 0.0F, calls_));
+  const auto rows = bench(std::vector<fs::path>{write_square("a.bin", 10)}, peers, {.runs = 1});
+  ASSERT_TRUE(rows) << rows.error().message;
+  EXPECT_DOUBLE_EQ(rows->at(0).points_filled, 25.0);
+  EXPECT_DOUBLE_EQ(rows->at(0).points_out, 100.0);
+  EXPECT_DOUBLE_EQ(rows->at(1).points_filled, 0.0);
+}
+
 TEST(SweepcastPeer, RefusesOptionsThatTheEncoderRefuses) {
   EncoderOptions options;
   options.codec = CodecId::rcpcc;

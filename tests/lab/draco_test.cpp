@@ -83,7 +83,9 @@ TEST(Draco, ExplicitStepsAreThoseThatItTakes) {
     EXPECT_GT(worst, 0.6 * step);
     EXPECT_LE(worst, std::sqrt(3.0) / 2 * step + 1e-5);
     // The points keep far enough from each other that at the fine step each is nearest to its own.
-    if (step < 0.1) EXPECT_NEAR(compare(cloud, decoded).max_o2d, worst, 1e-6);
+    if (step < 0.1) {
+      EXPECT_NEAR(compare(cloud, decoded).max_o2d, worst, 1e-6);
+    }
   }
   EXPECT_EQ((*make_draco_peer({.step_m = 0.0231}))->setting(), "step 0.0231 m");
   EXPECT_FALSE(make_draco_peer({.step_m = -1.0}));
