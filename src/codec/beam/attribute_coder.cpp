@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <memory>
 #include <utility>
+#include <variant>
 
 #include "codec/beam/integer_coder.hpp"
 #include "codec/beam/intensity_coder.hpp"
+#include "codec/beam/intensity_tree_coder.hpp"
 #include "codec/entropy/range_coder.hpp"
 
 namespace sweepcast::beam {
@@ -43,6 +46,43 @@ struct IntensityPlane {
   }
 };
 
+using FastIntensity = IntensityCoder<1>;
+using NormalIntensity = IntensityCoder<2>;
+
+// The coder of an effort; what it allocates is kept from sweep to sweep.
+class AnyIntensityCoder {
+ public:
+  void begin(Effort effort, int rows, int bits) {
+    switch (effort) {
+      case Effort::fast:
+        return begin_as<FastIntensity>(rows, bits);
+      case Effort::normal:
+        return begin_as<NormalIntensity>(rows, bits);
+      case Effort::best:
+        return begin_as<IntensityTreeCoder>(rows, bits);
+    }
+  }
+  // Calls use(coder).
+  template <class Use>
+  void visit(Use use) {
+    std::visit([&](auto& coder) { use(*coder); }, coder_);
+  }
+
+ private:
+  template <class Coder>
+  void begin_as(int rows, int bits) {
+    if (!std::holds_alternative<std::unique_ptr<Coder>>(coder_) ||
+        std::get<std::unique_ptr<Coder>>(coder_) == nullptr) {
+      coder_ = std::make_unique<Coder>();
+    }
+    std::get<std::unique_ptr<Coder>>(coder_)->begin(rows, bits);
+  }
+
+  std::variant<std::unique_ptr<FastIntensity>, std::unique_ptr<NormalIntensity>,
+               std::unique_ptr<IntensityTreeCoder>>
+      coder_;
+};
+
 bool ran_dry(const RangeDecoder& coder) {
   return coder.overran();
 }
@@ -57,7 +97,7 @@ struct AttributeCoder::State {
   LayerPlan plan;
   std::vector<std::int32_t> first_col;
   IntensityPlane plane;
-  IntensityCoder intensity;
+  AnyIntensityCoder intensity;
   IntegerCoder numbers;
   RecurrentCoder late;  // how much later than told a point was measured
   std::uint32_t last_bits = 0;
@@ -81,9 +121,10 @@ struct AttributeCoder::State {
   }
 
   // Intensities of the points at `row_cols` of a row.
-  template <class Coder, class Cells>
-  void code_intensities(Coder& coder, const LatticeStep& step, std::uint32_t number, int row,
-                        Cells& cells) {
+  template <class Coder, class Intensity>
+  void code_intensities(Coder& coder, Intensity& values, std::uint32_t number, int row,
+                        std::vector<std::uint32_t>& cells) {
+    const LatticeStep& step = plan.lattice[number];
     // Distances to the next known cell on the axis that the step halves, and on the other.
     std::ptrdiff_t a = step.col_stride;
     std::ptrdiff_t x = step.row_stride * plane.pitch;
@@ -93,10 +134,6 @@ struct AttributeCoder::State {
     for (const int col : row_cols) {
       if (ran_dry(coder)) return;
       std::uint32_t& value = cells[index(row, col)];
-      if (format.unit.kind == IntensityUnit::Kind::bits) {
-        value = code_bits(coder, value);
-        continue;
-      }
       const std::ptrdiff_t place = plane.at(row, col);
       IntensityNeighbours near;
       for (std::size_t i = 0; i < offsets.size(); ++i) {
@@ -105,10 +142,26 @@ struct AttributeCoder::State {
       }
       near.own_range = plane.range[static_cast<std::size_t>(place)];
       const std::int32_t decoded =
-          intensity.code(coder, near, number % (IntensityCoder::kSets - 1),
-                         static_cast<std::size_t>(row), static_cast<std::int32_t>(value));
+          values.code(coder, near, number % (IntensityEstimator::kSets - 1),
+                      static_cast<std::size_t>(row), static_cast<std::int32_t>(value));
       plane.value[static_cast<std::size_t>(place)] = decoded;
       value = static_cast<std::uint32_t>(decoded);
+    }
+  }
+
+  template <class Coder>
+  void code_row(Coder& coder, std::uint32_t number, int row, std::vector<std::uint32_t>& cells) {
+    if (format.unit.kind == IntensityUnit::Kind::bits) return code_bits_of_row(coder, row, cells);
+    intensity.visit([&](auto& values) { code_intensities(coder, values, number, row, cells); });
+  }
+
+  // Intensities that are floats' bits.
+  template <class Coder>
+  void code_bits_of_row(Coder& coder, int row, std::vector<std::uint32_t>& cells) {
+    for (const int col : row_cols) {
+      if (ran_dry(coder)) return;
+      std::uint32_t& value = cells[index(row, col)];
+      value = code_bits(coder, value);
     }
   }
 
@@ -162,35 +215,44 @@ struct AttributeCoder::State {
           plane.range[static_cast<std::size_t>(plane.at(row, col))] = range[index(row, col)];
         }
         if (row_cols.empty() || ran_dry(coder)) continue;
-        if (format.has_intensity) code_intensities(coder, step, number, row, cells.intensity);
+        if (format.has_intensity) code_row(coder, number, row, cells.intensity);
         if (format.has_ring) code_rings(coder, row, cells.ring);
         if (format.has_time) code_times(coder, row, cells.time);
       }
     }
   }
 
-  template <class Coder>
-  void code_extras(Coder& coder, AttributeValues& extras) {
+  template <class Coder, class Intensity>
+  void code_extra_intensities(Coder& coder, Intensity& coded, std::vector<std::uint32_t>& values) {
     IntensityNeighbours near;
     near.value.fill(-1);
     near.own_range = 64;  // the same for all: neighbours count fully
     near.range.fill(near.own_range);
     // Those before in the order of the octree, taken for one, two, three and four steps back.
     constexpr std::array<std::size_t, 4> kBack{0, 2, 5, 7};
-    for (std::uint32_t& value : extras.intensity) {
+    for (std::uint32_t& value : values) {
       if (ran_dry(coder)) return;
-      if (format.unit.kind == IntensityUnit::Kind::bits) {
-        value = code_bits(coder, value);
-        continue;
-      }
       const std::int32_t decoded =
-          intensity.code(coder, near, IntensityCoder::kSets - 1,
-                         static_cast<std::size_t>(plan.rows), static_cast<std::int32_t>(value));
+          coded.code(coder, near, IntensityEstimator::kSets - 1,
+                     static_cast<std::size_t>(plan.rows), static_cast<std::int32_t>(value));
       for (std::size_t i = kBack.size() - 1; i > 0; --i) {
         near.value[kBack[i]] = near.value[kBack[i - 1]];
       }
       near.value[kBack[0]] = decoded;
       value = static_cast<std::uint32_t>(decoded);
+    }
+  }
+
+  template <class Coder>
+  void code_extras(Coder& coder, AttributeValues& extras) {
+    if (format.has_intensity && format.unit.kind == IntensityUnit::Kind::bits) {
+      for (std::uint32_t& value : extras.intensity) {
+        if (ran_dry(coder)) return;
+        value = code_bits(coder, value);
+      }
+    } else if (format.has_intensity) {
+      intensity.visit(
+          [&](auto& values) { code_extra_intensities(coder, values, extras.intensity); });
     }
     std::int64_t before = 0;
     for (std::uint16_t& ring : extras.ring) {
@@ -231,7 +293,7 @@ void AttributeCoder::begin(const AttributeFormat& format, const LayerPlan* plan,
   s.last_bits = 0;
   if (!format.has_intensity) return;
   if (plan != nullptr) s.plane.reset(*plan);
-  s.intensity.begin(s.plan.rows, format.unit.width);
+  s.intensity.begin(s.plan.effort, s.plan.rows, format.unit.width);
 }
 
 void AttributeCoder::encode(int layer, const LayerCoder& layers, AttributeValues& cells,

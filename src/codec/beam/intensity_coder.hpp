@@ -1,215 +1,134 @@
-// Codes intensities as integers of up to 16 bits, from the intensities around them.
+// Codes intensities as integers of up to 16 bits, from the intensities around them: by how far they
+// are off an estimate.
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
-#include <vector>
 
+#include "codec/beam/intensity_estimator.hpp"
 #include "codec/entropy/mixer.hpp"
 
 namespace sweepcast::beam {
 
-/// What is known around a point. In order: one step back and one ahead, two back, one across, two
-/// ahead, three back, three ahead, four back, and the corners: back and ahead on the side across
-/// that is done, back and ahead on the other.
-struct IntensityNeighbours {
-  static constexpr std::size_t kCount = 12;
-  std::array<std::int32_t, kCount> value;  ///< -1 where not known
-  std::array<std::int32_t, kCount> range;  ///< of the neighbour, any unit
-  std::int32_t own_range;                  ///< the point's own, same unit
-};
-
-/// A value is a number of `bits` bits, coded from its highest. An estimate is formed of the
-/// neighbours, by weights that adapt to the sweep: lasers that fire by turns differ, so that the
-/// second neighbour may tell more than the first. Under a logistic distribution around the estimate
-/// each bit has a probability; that is one context of four, so that its scale is learnt and not
-/// assumed. Integer arithmetic throughout; one function serves both directions.
+/// Says on which side of an estimate a value lies and how far off: in unary, by buckets as wide as
+/// errors are large, then the place in the bucket. That takes little more decisions than there are
+/// bits of information. `kInputs` contexts are mixed: 1 is fast, 2 are small. Integer arithmetic
+/// throughout; one function serves both directions.
+template <std::size_t kInputs>
 class IntensityCoder {
  public:
-  IntensityCoder() : mixer_(16, kWeightSets) {}
-
-  /// Begins a sweep of `rows` rows; forgets what was learnt.
+  /// Begins a sweep of `rows` rows of values of `bits` bits; forgets what was learnt.
   void begin(int rows, int bits) {
     bits_ = bits;
-    mixer_.reset();
-    for (auto& weights : weights_) weights.fill(0);
-    bias_.assign(static_cast<std::size_t>(rows) + 1, 0);
-    row_error_.assign(static_cast<std::size_t>(rows) + 1, first_error());
-    spread_error_.fill(first_error());
-    last_ = 1 << (bits - 2 > 0 ? bits - 2 : 0);
+    side_.reset();
+    bucket_.reset();
+    place_.reset();
+    estimator_.begin(rows, bits);
   }
 
-  /// Codes one value. `set` tells apart neighbourhoods of different shape, below `kSets`; rows are
-  /// counted to `rows`, which stands for none. Decoding, `truth` is not used.
+  /// Codes one value; `set` and `row` are the estimator's. Decoding, `truth` is not used.
   template <class Coder>
   std::int32_t code(Coder& coder, const IntensityNeighbours& near, std::size_t set, std::size_t row,
                     std::int32_t truth) {
-    const Estimate estimate = estimate_of(near, set, row);
-    const std::uint32_t spread = spread_of(near, estimate.mean);
-    const std::int32_t scale =
-        std::max(kSmallestScale, (row_error_[row] + spread_error_[spread]) / 2 * 185 / 256);
-    const std::int32_t a = near.value[0];
-    const std::int32_t b = near.value[1];
-    const std::uint32_t sides = coarse(a) * 50U + coarse(b);
-    const std::uint32_t beyond = coarse(near.value[2]) * 50U + coarse((a + b) / 2);
-    const std::uint32_t about =
-        static_cast<std::uint32_t>(row) * 16U +
-        static_cast<std::uint32_t>((std::int64_t{estimate.value} * 16) >> (bits_ + 4));
-    std::array<std::uint32_t, 3> place{};  // of four bits' probabilities, which lie side by side
-    std::uint32_t prefix = 1;
-    std::uint32_t node = 1;
-    std::int32_t low = 0;
-    std::int32_t high = 1 << bits_;
-    std::uint32_t from = 0;  // shares of the distribution below `low` and `high`, 1/65536
-    std::uint32_t to = 65'536;
-    for (int depth = 0; depth < bits_; ++depth) {
-      if (depth % 4 == 0) {
-        // Of long values only the first bits have a meaning of their own.
-        prefix = depth < 8 ? prefix * 16U + node : 1'000U + static_cast<std::uint32_t>(depth);
-        node = 1;
-        place = {hash_context(prefix, sides + 1'000U) << 4,
-                 hash_context(prefix, beyond + 10'000U) << 4,
-                 hash_context(prefix, about + 30'000U) << 4};
-      }
-      const std::int32_t middle = (low + high) / 2;
-      const std::uint32_t share_below = std::clamp(below(middle, estimate.value, scale), from, to);
-      const std::uint32_t chance = chance_of_upper(from, share_below, to);
-      const BitMixer<4>::Contexts contexts{place[0] + node, place[1] + node, place[2] + node,
-                                           hash_context(chance, spread + 20'000U)};
-      const int bit = bits_ - 1 - depth;
-      const auto weights =
-          static_cast<std::size_t>(chance / 4U * 8U) + static_cast<std::size_t>(bit & 7);
-      const bool upper = mixer_.code(coder, contexts, weights, ((truth >> bit) & 1) != 0);
-      node = node * 2 + (upper ? 1U : 0U);
-      (upper ? low : high) = middle;
-      (upper ? from : to) = share_below;
-    }
-    learn(estimate, set, row, spread, low);
-    return low;
+    const auto estimate = estimator_.estimate(near, set, row);
+    const Around around = describe(near, estimate);
+    const std::int32_t most = (1 << bits_) - 1;
+    const std::int32_t centre = std::min(most, (estimate.value + kOne / 2) / kOne);
+    const bool up = centre == 0 || side_.code(coder, contexts(around, around.fraction, 0, centre),
+                                              around.width, truth >= centre);
+    const std::int32_t sign = up ? 1 : -1;
+    const std::int32_t first = up ? centre : centre - 1;  // what is nearest on this side
+    const std::int32_t limit = up ? most - centre : centre - 1;
+    const std::int32_t off = code_offset(coder, around, first, sign, limit, (truth - first) * sign);
+    const std::int32_t value = first + sign * off;
+    estimator_.learn(estimate, value);
+    return value;
   }
-
-  static constexpr std::size_t kSets = 32;
 
  private:
-  static constexpr std::size_t kCount = IntensityNeighbours::kCount;
-  static constexpr std::size_t kTaps = 8;  // neighbours with a weight that adapts
-  static constexpr std::size_t kSpreads = 12;
-  static constexpr std::size_t kWeightSets = std::size_t{17} * 8;
-  static constexpr std::uint32_t kUnknownChance = 65;
-  static constexpr std::int32_t kOne = 16;  // estimates and errors are in sixteenths
-  static constexpr std::int32_t kSmallestScale = 6;
-  static constexpr std::int32_t kWeightLimit = 1 << 18;
-  static constexpr std::int32_t kBiasLimit = 1 << 24;
+  static constexpr std::int32_t kOne = IntensityEstimator::kOne;
+  static constexpr int kTableBits = 13;
+  static constexpr std::uint32_t kBuckets = 16;
+  static constexpr std::uint32_t kWidths = 64;
+  using Bits = BitMixer<kInputs>;
 
-  struct Estimate {
-    std::int32_t mean;                      // plain weighted mean
-    std::int32_t value;                     // with the weights that adapt
-    std::array<std::int32_t, kTaps> input;  // differences from the mean
-    std::int64_t power;
+  // What contexts are made of.
+  struct Around {
+    std::uint32_t width = 0;     // how large errors are, in half octaves
+    std::uint32_t fraction = 0;  // of the estimate, 1/16
+    std::uint32_t sides = 0;     // the values on both sides
+    int bucket_bits = 0;
   };
 
-  [[nodiscard]] std::int32_t first_error() const { return kOne * 5 << std::max(0, bits_ - 7); }
+  [[nodiscard]] Around describe(const IntensityNeighbours& near,
+                                const IntensityEstimator::Estimate& estimate) const {
+    Around around;
+    const auto error = static_cast<std::uint32_t>(estimate.error);
+    const auto octave = static_cast<std::uint32_t>(std::bit_width(error));
+    around.width = std::min(octave * 2 + ((error * 2 >> (octave - 1)) & 1U), kWidths - 1);
+    around.fraction = static_cast<std::uint32_t>(estimate.value + kOne / 2) % kOne;
+    around.bucket_bits = std::max(0, static_cast<int>(std::bit_width(error * 5 / 8)) - 5);
+    if constexpr (kInputs > 1) {
+      around.sides = coarse(near.value[0]) * 32U + coarse(near.value[1]);
+    }
+    return around;
+  }
 
   [[nodiscard]] std::uint32_t coarse(std::int32_t value) const {
-    return value < 0 ? 0U : 1U + static_cast<std::uint32_t>((std::int64_t{value} * 42) >> bits_);
+    return value < 0 ? 0U : 1U + ((static_cast<std::uint32_t>(value) * 20U) >> bits_);
   }
 
-  // The mean of the neighbours, those at another depth counting little, and an adaptive filter's
-  // correction (normalised least mean squares).
-  [[nodiscard]] Estimate estimate_of(const IntensityNeighbours& near, std::size_t set,
-                                     std::size_t row) const {
-    constexpr std::array<std::int32_t, kCount> kShare{4, 4, 4, 1, 1, 0, 0, 0, 1, 1, 1, 1};
-    const std::int64_t range = near.own_range;
-    std::int64_t sum = 0;
-    std::int64_t shares = 0;
-    for (std::size_t i = 0; i < kCount; ++i) {
-      if (near.value[i] < 0) continue;
-      const std::int64_t apart = std::abs(near.range[i] - range);
-      const int share = kShare[i] * (apart * 32 < range ? 16 : apart * 8 < range ? 4 : 1);
-      shares += share;
-      sum += std::int64_t{share} * near.value[i];
+  // A decision that parts the values at `bound`. `detail` and `node`, below 4, say which
+  // one it is.
+  [[nodiscard]] static typename Bits::Contexts contexts(const Around& around, std::uint32_t detail,
+                                                        std::uint32_t node, std::int32_t bound) {
+    typename Bits::Contexts at;
+    at[0] = (around.width * kBuckets + detail) * 4U + node;
+    if constexpr (kInputs > 1) {
+      at[1] = hash_context(static_cast<std::uint32_t>(bound) * 4U + node, around.sides);
     }
-    Estimate estimate{};
-    estimate.mean =
-        shares > 0 ? static_cast<std::int32_t>((sum * kOne + shares / 2) / shares) : last_ * kOne;
-    estimate.power = std::int64_t{kOne} * kOne * 4;
-    std::int64_t dot = 0;
-    for (std::size_t i = 0; i < kTaps; ++i) {
-      const bool used = near.value[i] >= 0 && std::abs(near.range[i] - range) * 8 <= range;
-      const std::int32_t input = used ? near.value[i] * kOne - estimate.mean : 0;
-      estimate.input[i] = input;
-      estimate.power += std::int64_t{input} * input;
-      dot += std::int64_t{input} * weights_[set][i];
+    return at;
+  }
+
+  // How far off a value is, 0 to `limit`.
+  template <class Coder>
+  std::int32_t code_offset(Coder& coder, const Around& around, std::int32_t first,
+                           std::int32_t sign, std::int32_t limit, std::int32_t off) {
+    const std::uint32_t side = sign > 0 ? 1U : 2U;
+    int bits = around.bucket_bits;
+    std::int32_t from = 0;
+    std::uint32_t bucket = 0;
+    for (; from + (1 << bits) <= limit; ++bucket) {
+      const std::uint32_t number = std::min(bucket, kBuckets - 5);
+      const std::uint32_t detail = bucket == 0 ? around.fraction / 4U : 4U + number;
+      const std::int32_t next = from + (1 << bits);
+      if (!bucket_.code(coder, contexts(around, detail, side, first + sign * next), number,
+                        off >= next)) {
+        break;
+      }
+      from = next;
+      if (bucket >= kNarrowBuckets) ++bits;
     }
-    const std::int32_t most = ((1 << bits_) - 1) * kOne;
-    const std::int64_t adapted = estimate.mean + (dot >> 16) + (bias_[row] >> 4);
-    estimate.value = static_cast<std::int32_t>(std::clamp<std::int64_t>(adapted, 0, most));
-    return estimate;
-  }
-
-  // How far the neighbours lie from their mean, roughly logarithmically.
-  [[nodiscard]] std::uint32_t spread_of(const IntensityNeighbours& near, std::int32_t mean) const {
-    const std::int32_t centre = (mean + kOne / 2) / kOne;
-    std::int64_t sum = 0;
-    int count = 0;
-    for (const std::size_t i : {0U, 1U, 2U, 3U, 4U, 8U, 9U}) {
-      if (near.value[i] < 0) continue;
-      sum += std::abs(near.value[i] - centre);
-      ++count;
+    const std::uint32_t which = around.width * 8U + std::min(bucket, 3U) * 2U + side - 1U;
+    std::uint32_t node = 1;
+    for (std::int32_t half = (1 << bits) / 2; half > 0; half /= 2) {
+      if (from + half > limit) continue;
+      const bool far = place_.code(coder, {which * 8U + node}, 0, off >= from + half);
+      from += far ? half : 0;
+      node = std::min(node * 2 + (far ? 1U : 0U), 7U);
     }
-    if (count == 0) return 9;
-    const std::int64_t quarters = (sum * 4 / count) >> std::max(0, bits_ - 8);
-    if (quarters < 4) return 0;
-    const auto exponent =
-        static_cast<std::uint32_t>(std::bit_width(static_cast<std::uint64_t>(quarters)) - 3);
-    const auto half = static_cast<std::uint32_t>((quarters >> (exponent + 1)) & 1);
-    return std::min<std::uint32_t>(exponent * 2U + half, kSpreads - 1);
+    return from;
   }
 
-  // Share of the distribution around `centre` that lies below a value, 1/65536.
-  [[nodiscard]] static std::uint32_t below(std::int32_t value, std::int32_t centre,
-                                           std::int32_t scale) {
-    const std::int32_t apart = value * kOne - kOne / 2 - centre;
-    const std::int32_t limit = scale * 8;  // where the logistic domain ends
-    if (apart >= limit) return squash(kLogisticLimit);
-    if (apart <= -limit) return squash(-kLogisticLimit);
-    return squash(static_cast<int>(std::int64_t{apart} * kLogisticOne / scale));
-  }
-
-  // The chance of the upper part of a distribution that is known to lie between two shares, in 65
-  // steps that are even in the logistic domain.
-  [[nodiscard]] static std::uint32_t chance_of_upper(std::uint32_t from, std::uint32_t at,
-                                                     std::uint32_t to) {
-    if (to <= from + 1) return kUnknownChance;
-    const std::uint32_t chance = (to - at) * 65'535U / (to - from);
-    return static_cast<std::uint32_t>(stretch(chance) + kLogisticLimit + 1) >> 6;
-  }
-
-  void learn(const Estimate& estimate, std::size_t set, std::size_t row, std::uint32_t spread,
-             std::int32_t value) {
-    const std::int32_t error = value * kOne - estimate.value;
-    bias_[row] = std::clamp(bias_[row] + error / 8, -kBiasLimit, kBiasLimit);
-    for (std::size_t i = 0; i < kTaps; ++i) {
-      const std::int64_t change = std::int64_t{estimate.input[i]} * error * 300 / estimate.power;
-      weights_[set][i] = static_cast<std::int32_t>(
-          std::clamp<std::int64_t>(weights_[set][i] + change, -kWeightLimit, kWeightLimit));
-    }
-    row_error_[row] += (std::abs(error) - row_error_[row]) / 16;
-    spread_error_[spread] += (std::abs(error) - spread_error_[spread]) / 32;
-    last_ = value;
-  }
+  static constexpr std::uint32_t kNarrowBuckets = 5;
 
   int bits_ = 8;
-  BitMixer<4> mixer_;
-  std::array<std::array<std::int32_t, kTaps>, kSets> weights_{};  // 1/65536
-  std::vector<std::int32_t> bias_;                                // by row: of the estimate, 1/256
-  std::vector<std::int32_t> row_error_;                           // by row: mean absolute error
-  std::array<std::int32_t, kSpreads> spread_error_{};
-  std::int32_t last_ = 0;
+  IntensityEstimator estimator_;
+  Bits side_{kTableBits, kWidths};
+  Bits bucket_{kTableBits, kBuckets};
+  BitMixer<1> place_{kTableBits, 1};
 };
 
 }  // namespace sweepcast::beam
