@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "common/inputs.hpp"
 #include "common/progress.hpp"
 #include "common/recording.hpp"
+#include "lab/attribute_error.hpp"
 #include "lab/distortion.hpp"
 #include "sweepcast/cloud_file.hpp"
 #include "sweepcast/commands.hpp"
@@ -37,6 +39,7 @@ struct Verified {
   std::string name;
   SweepCounts counts;
   lab::Distortion distortion;
+  lab::AttributeErrors attributes;  ///< worst differences
 };
 
 /// Errors of many frames, each original point counting once.
@@ -87,6 +90,33 @@ std::size_t count_points(const PointCloud& cloud) {
                             cloud.x.begin(), cloud.x.end(), [](float x) { return std::isnan(x); }));
 }
 
+bool keeps_order(const FrameHeader& header) {
+  return std::any_of(header.parts.begin(), header.parts.end(), [&](const FramePart& part) {
+    return part_name(header.codec, part.kind) == "order";
+  });
+}
+
+/// Worst differences of the attributes that are there.
+ordered_json attributes_json(const lab::AttributeErrors& errors) {
+  ordered_json json = ordered_json::object();
+  if (errors.intensity) json["intensity"] = *errors.intensity;
+  if (errors.ring) json["ring"] = *errors.ring;
+  if (errors.time_ns) json["time_ns"] = *errors.time_ns;
+  return json;
+}
+
+/// The same in words; empty where there are none.
+std::string attributes_text(const lab::AttributeErrors& errors) {
+  std::string text;
+  const auto add = [&](const char* name, const std::optional<double>& worst, const char* unit) {
+    if (worst) text += fmt::format("{}{} {:g}{}", text.empty() ? "" : ", ", name, *worst, unit);
+  };
+  add("intensity", errors.intensity, "");
+  add("ring", errors.ring, "");
+  add("time", errors.time_ns, " ns");
+  return text;
+}
+
 Result<Verified> verify_one(SweepReader& reader, std::size_t i, Workspace& work) {
   Status status = reader.read(i, work.frame);
   if (status) status = work.decoder.decode(work.frame, work.decoded);
@@ -104,7 +134,8 @@ Result<Verified> verify_one(SweepReader& reader, std::size_t i, Workspace& work)
   if (status)
     status = check_counts(header.counts, work.original.size(), count_points(work.decoded));
   if (!status) return tl::unexpected(status.error());
-  return Verified{*name, header.counts, lab::compare(work.original, work.decoded)};
+  return Verified{*name, header.counts, lab::compare(work.original, work.decoded),
+                  lab::attribute_errors(work.original, work.decoded, keeps_order(header))};
 }
 
 ordered_json frame_json(const Verified& frame) {
@@ -112,6 +143,7 @@ ordered_json frame_json(const Verified& frame) {
           {"max_error", frame.distortion.max_o2d},
           {"mean_error", frame.distortion.mean_o2d},
           {"rms_error", frame.distortion.rms_o2d},
+          {"worst_attributes", attributes_json(frame.attributes)},
           {"counts", sums_of(frame.counts).json()}};
 }
 
@@ -119,10 +151,12 @@ void report(const VerifyOptions& options, const std::vector<Verified>& frames,
             const std::vector<std::string>& problems) {
   CountSums counts;
   ErrorSums errors;
+  lab::AttributeErrors attributes;
   ordered_json list = ordered_json::array();
   for (const Verified& frame : frames) {
     counts.add(frame.counts);
     errors.add(frame.distortion);
+    attributes.add(frame.attributes);
     list.push_back(frame_json(frame));
   }
   if (options.json) {
@@ -130,6 +164,7 @@ void report(const VerifyOptions& options, const std::vector<Verified>& frames,
                 {"max_error", errors.max},
                 {"mean_error", errors.mean()},
                 {"rms_error", errors.rms()},
+                {"worst_attributes", attributes_json(attributes)},
                 {"counts", counts.json()},
                 {"frames", list},
                 {"problems", problems}});
@@ -138,6 +173,9 @@ void report(const VerifyOptions& options, const std::vector<Verified>& frames,
   fmt::print("{}: {} verified\n", options.input.string(), count_of(frames.size(), "frame"));
   fmt::print("  original to nearest decoded point: max {:.3f} m, mean {:.4f} m, RMS {:.4f} m\n",
              errors.max, errors.mean(), errors.rms());
+  if (const std::string text = attributes_text(attributes); !text.empty()) {
+    fmt::print("  worst attribute differences: {}\n", text);
+  }
   fmt::print("  {} points in, {} kept; lost: {}\n", counts.points_in(), counts.points_coded(),
              counts.losses());
 }

@@ -6,10 +6,11 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <nanoflann.hpp>
 #include <numbers>
 #include <span>
 #include <vector>
+
+#include "lab/point_tree.hpp"
 
 namespace sweepcast::lab {
 namespace {
@@ -38,50 +39,9 @@ Points usable(const CloudView& cloud) {
   return points;
 }
 
-/// Finds nearest points; the points must outlive the tree. Names of the members with `kdtree_` are
-/// nanoflann's.
-class Tree {
- public:
-  explicit Tree(std::span<const Vector3d> points) : points_(points), index_(3, *this) {}
-  Tree(const Tree&) = delete;
-  Tree& operator=(const Tree&) = delete;
-
-  /// Indices of the nearest points, nearest first; fewer where there are fewer.
-  std::span<const std::uint32_t> nearest(const Vector3d& query,
-                                         std::span<std::uint32_t> indices) const {
-    std::array<double, kNormalNeighbours> squares{};
-    const std::size_t found = index_.knnSearch(
-        query.data(), std::min(indices.size(), squares.size()), indices.data(), squares.data());
-    return indices.first(found);
-  }
-
-  /// Index of the nearest point; there must be one.
-  std::uint32_t nearest(const Vector3d& query) const {
-    std::uint32_t index = 0;
-    double square = 0;
-    index_.knnSearch(query.data(), 1, &index, &square);
-    return index;
-  }
-
-  std::size_t kdtree_get_point_count() const { return points_.size(); }
-  double kdtree_get_pt(std::size_t i, std::size_t axis) const {
-    return points_[i][static_cast<Eigen::Index>(axis)];
-  }
-  template <class Box>
-  bool kdtree_get_bbox(Box& /*box*/) const {
-    return false;
-  }
-
- private:
-  using Metric = nanoflann::L2_Simple_Adaptor<double, Tree>;
-
-  std::span<const Vector3d> points_;
-  nanoflann::KDTreeSingleIndexAdaptor<Metric, Tree, 3, std::uint32_t> index_;
-};
-
 /// Unit normals by principal component analysis: the direction in which the neighbours of a point
 /// vary least. Zero where fewer than three neighbours exist.
-std::vector<Vector3d> estimate_normals(std::span<const Vector3d> points, const Tree& tree) {
+std::vector<Vector3d> estimate_normals(std::span<const Vector3d> points, const PointTree& tree) {
   std::vector<Vector3d> normals;
   normals.reserve(points.size());
   std::array<std::uint32_t, kNormalNeighbours> indices{};
@@ -190,7 +150,7 @@ struct Reference::State {
         size(original.size) {}
 
   Points points;
-  Tree tree;
+  PointTree tree;
   std::vector<Vector3d> normals;
   std::size_t size;
 };
@@ -219,7 +179,7 @@ Distortion Reference::compare(const CloudView& decoded_cloud) const {
     return result;
   }
 
-  const Tree decoded_tree(decoded);
+  const PointTree decoded_tree(decoded);
   Sums o2d;
   for (std::size_t i = 0; i < original.size(); ++i) {
     o2d.add(decoded[decoded_tree.nearest(original[i])] - original[i], state_->normals[i]);

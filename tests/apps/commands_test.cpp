@@ -212,6 +212,24 @@ TEST_F(ToolTest, VerifyMeasuresEveryOriginalPoint) {
   EXPECT_NEAR(report["max_error"].get<double>(), largest, 1e-6);
 }
 
+TEST_F(ToolTest, VerifyTellsTheWorstAttributeDifference) {
+  auto room = make_room(0.0F);
+  for (std::size_t i = 0; i < room.size(); ++i) room[i][3] = static_cast<float>(i % 50);
+  write_bin("sweeps/000000.bin", room);
+  const std::string encode = "encode sweeps --codec beam --max-error 0.01 --keep-order -o ";
+  ASSERT_EQ(run(encode + "room.sweep").exit_status, 0);
+  ASSERT_EQ(run(encode + "rounded.sweep --intensity-step 4").exit_status, 0);
+  const auto worst = [&](const std::string& file) {
+    const Outcome outcome = run("verify " + file + " --original sweeps --json");
+    EXPECT_EQ(outcome.exit_status, 0) << outcome.err;
+    const auto report = outcome.json();
+    EXPECT_EQ(report["worst_attributes"], report["frames"][0]["worst_attributes"]);
+    return report["worst_attributes"];
+  };
+  EXPECT_EQ(worst("room.sweep"), nlohmann::json({{"intensity", 0.0}}));
+  EXPECT_EQ(worst("rounded.sweep"), nlohmann::json({{"intensity", 2.0}}));
+}
+
 TEST_F(ToolTest, VerifyFindsWhatDoesNotFit) {
   make_recording(2);
   std::filesystem::remove(path("sweeps/000001.bin"));
