@@ -28,6 +28,7 @@ std::uint32_t checksum(const PointCloud& cloud) {
   }
   for (const std::uint16_t ring : cloud.ring) out.put(ring);
   for (const std::int64_t time : cloud.time_ns) out.put(time);
+  for (const std::uint8_t filled : cloud.filled) out.put(filled);
   return crc32(bytes);
 }
 
@@ -54,6 +55,7 @@ void print_case(const CrossCase& item) {
   }
   Decoder decoder;
   Decoder coarse({.max_layers = 2});
+  Decoder filling({.fill = true});
   for (std::size_t i = 0; i < item.sweeps.size(); ++i) {
     const auto frame = encoder->encode(item.sweeps[i], {i, 1'000'000'000, "made up"});
     if (!frame) {
@@ -64,6 +66,7 @@ void print_case(const CrossCase& item) {
       std::printf("%s %zu: %zu bytes %08lx\n", item.name.c_str(), i, frame->size(),
                   printable(crc32(*frame)));
       print_decoded("coarse", *frame, coarse);
+      if (encoder->last_counts().thinned > 0) print_decoded("filled", *frame, filling);
     } else {  // what zstd makes of its parts depends on zstd
       std::printf("%s %zu\n", item.name.c_str(), i);
     }

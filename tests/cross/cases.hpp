@@ -34,19 +34,28 @@ inline std::vector<CrossCase> cross_cases() {
   };
   const auto plain = two_sweeps({});
   add("fast", plain, [](BeamOptions& o) { o.effort = Effort::fast; });
-  add("normal", plain, [](BeamOptions&) {});
-  add("best", plain, [](BeamOptions& o) { o.effort = Effort::best; });
   add("fine", plain, [](BeamOptions& o) { o.max_error_m = 0.002; });
-  add("coarse", plain, [](BeamOptions& o) { o.max_error_m = 0.5; });
+  add("coarse best", plain, [](BeamOptions& o) {
+    o.max_error_m = 0.5;
+    o.effort = Effort::best;
+  });
+  add("level 2 fast", plain, [](BeamOptions& o) {
+    o.level = 2;
+    o.effort = Effort::fast;
+  });
+  add("level 3", plain, [](BeamOptions& o) { o.level = 3; });
+  add("level 5 best", plain, [](BeamOptions& o) {
+    o.level = 5;
+    o.effort = Effort::best;
+  });
   add("jitter", two_sweeps({.seed = 5, .jitter_deg = 0.2}), [](BeamOptions&) {});
   add("deskewed", two_sweeps({.beams = 24, .firings = 360, .seed = 7, .deskewed = true}),
       [](BeamOptions& o) { o.max_error_m = 0.02; });
 
   const auto rich = two_sweeps({.seed = 9, .second_returns = 9, .attributes = true});
-  add("attributes", rich, [](BeamOptions&) {});
-  add("attributes fast", rich, [](BeamOptions& o) { o.effort = Effort::fast; });
-  add("attributes best", rich, [](BeamOptions& o) { o.effort = Effort::best; });
+  add("attributes", rich, [](BeamOptions& o) { o.level = 4; });
   add("intensity step", rich, [](BeamOptions& o) {
+    o.effort = Effort::best;
     o.fields = Fields::xyzi;
     o.intensity_step = 2.5;
   });
