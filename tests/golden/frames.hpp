@@ -9,6 +9,7 @@
 #include "codec/scene.hpp"
 #include "core/bytes.hpp"
 #include "core/crc32.hpp"
+#include "cross/made_sweeps.hpp"
 
 namespace sweepcast::test {
 
@@ -59,6 +60,42 @@ inline std::vector<GoldenSource> golden_sources() {
     o.region_size = 16;
     o.zstd_level = 19;
   });
+  const auto add_beam = [&](const char* name, const MadeSweep& make, auto change) {
+    EncoderOptions options;
+    options.codec = CodecId::beam;
+    change(options.beam);
+    sources.push_back({name, options, made_sweep(make)});
+  };
+  const MadeSweep spinning;
+  const MadeSweep rich{.seed = 2, .second_returns = 40, .attributes = true};
+  add_beam("beam_fast", spinning, [](BeamOptions& o) { o.effort = Effort::fast; });
+  add_beam("beam_normal", spinning, [](BeamOptions&) {});
+  add_beam("beam_best", spinning, [](BeamOptions& o) { o.effort = Effort::best; });
+  add_beam("beam_level2", spinning, [](BeamOptions& o) { o.level = 2; });
+  add_beam("beam_level5_fast", spinning, [](BeamOptions& o) {
+    o.level = 5;
+    o.effort = Effort::fast;
+  });
+  add_beam("beam_jitter", {.firings = 160, .jitter_deg = 0.2},
+           [](BeamOptions& o) { o.max_error_m = 0.1; });
+  add_beam("beam_deskewed", {.beams = 24, .firings = 360, .deskewed = true},
+           [](BeamOptions& o) { o.max_error_m = 0.05; });
+  add_beam("beam_attributes", rich, [](BeamOptions& o) { o.intensity_step = 20; });
+  add_beam("beam_attributes_fast", rich, [](BeamOptions& o) {
+    o.effort = Effort::fast;
+    o.intensity_step = 20;
+    o.keep_order = true;
+  });
+  add_beam("beam_attributes_best", rich, [](BeamOptions& o) {
+    o.effort = Effort::best;
+    o.intensity_step = 20;
+  });
+  add_beam("beam_lossless", {.beams = 8, .firings = 180},
+           [](BeamOptions& o) { o.lossless = true; });
+  add_beam("beam_organised", {.organised = true}, [](BeamOptions& o) { o.keep_order = true; });
+  EncoderOptions octree;
+  octree.codec = CodecId::beam;
+  sources.push_back({"beam_octree", octree, made_scatter(200, 1)});
   return sources;
 }
 
@@ -68,9 +105,21 @@ inline std::uint32_t checksum_of(const PointCloud& cloud) {
   ByteWriter out(bytes);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     for (const float value : {cloud.x[i], cloud.y[i], cloud.z[i]}) {
-      out.put(std::bit_cast<std::uint32_t>(value));
+      const bool missing = value != value;  // NaNs differ from machine to machine
+      out.put(missing ? 0x7FC00000U : std::bit_cast<std::uint32_t>(value));
     }
   }
+  return crc32(bytes);
+}
+
+/// CRC-32 of the other columns: intensity, ring, time, and the width, little-endian.
+inline std::uint32_t attributes_checksum_of(const PointCloud& cloud) {
+  Bytes bytes;
+  ByteWriter out(bytes);
+  for (const float value : cloud.intensity) out.put(std::bit_cast<std::uint32_t>(value));
+  for (const std::uint16_t ring : cloud.ring) out.put(ring);
+  for (const std::int64_t time : cloud.time_ns) out.put(time);
+  out.put(cloud.width);
   return crc32(bytes);
 }
 

@@ -24,7 +24,8 @@ int main(int argc, char** argv) {
         .write(reinterpret_cast<const char*>(frame->data()),
                static_cast<std::streamsize>(frame->size()));
     std::ofstream text(stem.string() + ".txt");
-    text << "points " << cloud.size() << "\nxyz_crc32 " << test::checksum_of(cloud) << "\n";
+    text << "points " << cloud.size() << "\nxyz_crc32 " << test::checksum_of(cloud)
+         << "\nattributes_crc32 " << test::attributes_checksum_of(cloud) << "\n";
     if (!text.good()) return 1;
     std::printf("%s: %zu bytes, %zu points\n", path.c_str(), frame->size(), cloud.size());
   }
