@@ -9,6 +9,7 @@
 
 #include "codec/beam/alignment.hpp"
 #include "codec/beam/codec.hpp"
+#include "codec/beam/error_bound.hpp"
 #include "codec/beam/model_bytes.hpp"
 #include "sensor/beam_grid.hpp"
 #include "sweepcast/cloud_file.hpp"
@@ -44,7 +45,7 @@ Pieces pieces_of(const FrameHeader& frame) {
 /// Bytes of points as an octree whose cells keep the bound.
 std::size_t octree_bytes(const PointCloud& cloud, const std::vector<std::uint32_t>& points,
                          double max_error_m) {
-  const double step_m = max_error_m * 2.0 / std::sqrt(3.0);
+  const double step_m = static_cast<double>(beam::extras_step(max_error_m)) / kRangeUnits;
   std::vector<LatticePoint> lattice;
   for (const std::uint32_t point : points) {
     const std::array<double, 3> xyz{cloud.x[point], cloud.y[point], cloud.z[point]};
@@ -84,7 +85,7 @@ class Scene {
 
   void project(const PointCloud& cloud, const std::optional<Motion>& motion) {
     BeamGridOptions grid;
-    grid.max_error_m = kAngularShare * max_error_m_;
+    grid.max_error_m = beam::kAngularShare * max_error_m_;
     grid.nearest = beam::kNearest;
     grid.farthest = beam::kFarthest;
     grid.motion = motion;
@@ -105,10 +106,8 @@ class Scene {
     LayerPlan plan;
     beam::set_plan(model_, image_.cols, base_rows, base_cols, plan);
     plan.effort = effort;
-    constexpr double kRounding = 0.6e-4;
-    const double half = max_error_m_ * std::sqrt(1.0 - kAngularShare * kAngularShare) - kRounding;
     plan.quality.assign(static_cast<std::size_t>(LayerCoder::layers(plan)),
-                        {static_cast<std::int32_t>(2.0 * half * kRangeUnits), -1});
+                        {beam::range_step(max_error_m_), -1});
     return plan;
   }
 
@@ -138,8 +137,6 @@ class Scene {
   }
 
  private:
-  static constexpr double kAngularShare = 0.15;  // as the encoder's
-
   SensorModel model_;
   double max_error_m_;
   BeamProjector projector_;
@@ -279,7 +276,7 @@ class StageMeter {
       const std::size_t i = std::min(layer, BeamQuality::kLayers - 1);
       const double tolerance = quality.tolerance_m[i];
       plan.quality[layer] = {
-          static_cast<std::int32_t>(quality.step_m[i] * kRangeUnits),
+          beam::range_step(quality.step_m[i] / 2.0),
           tolerance > 0 ? static_cast<std::int32_t>(tolerance * kRangeUnits) : -1};
     }
     const std::size_t thin = scene_.layer_bytes(plan);
