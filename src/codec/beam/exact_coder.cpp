@@ -8,6 +8,7 @@
 #include "codec/beam/integer_coder.hpp"
 #include "codec/entropy/range_coder.hpp"
 #include "core/bytes.hpp"
+#include "sensor/motion.hpp"
 
 namespace sweepcast::beam {
 namespace {
@@ -88,21 +89,22 @@ class ExactCoder {
   // Codes point `i` of which `decoded` is known. Decoding, `truth` and its range are not used.
   Point code(std::size_t i, const Point& decoded, const Point& truth, std::int32_t true_range) {
     const std::size_t row = origins_.row[i];
-    const bool on_beam = row < origins_.height_m.size();
-    const std::array<double, 3> origin{0.0, 0.0, on_beam ? origins_.height_m[row] : 0.0};
+    const bool on_beam = row < origins_.beam_m.size();
+    const std::array<double, 3> origin = on_beam ? origins_.beam_m[row] : std::array<double, 3>{};
     const std::size_t first = std::abs(decoded[0]) >= std::abs(decoded[1]) ? 0 : 1;
     const auto of_row = static_cast<std::uint32_t>(row) * 4U;
     Point exact{};
     double estimate_of_first = decoded[first];
     if (on_beam && range_unit_ > 0) {
       const std::int64_t range = code_range(origins_.range[i], of_row, true_range);
-      estimate_of_first *= static_cast<double>(range) / origins_.range[i];
+      const double stretch = static_cast<double>(range) / origins_.range[i];
+      estimate_of_first = origin[first] + (decoded[first] - origin[first]) * stretch;
     }
     exact[first] = code_value(0, estimate_of_first, of_row, truth[first]);
     // How much farther along its beam the point lies.
-    const double stretch = on_beam && std::abs(decoded[first]) > kTooNear
-                               ? double{exact[first]} / double{decoded[first]}
-                               : 1.0;
+    const double reach = decoded[first] - origin[first];
+    const double stretch =
+        on_beam && std::abs(reach) > kTooNear ? (exact[first] - origin[first]) / reach : 1.0;
     for (const std::size_t axis : {1 - first, std::size_t{2}}) {
       const double estimate = origin[axis] + (double{decoded[axis]} - origin[axis]) * stretch;
       exact[axis] = code_value(axis == 2 ? 2 : 1, estimate, of_row + 1, truth[axis]);
@@ -111,7 +113,7 @@ class ExactCoder {
   }
 
  private:
-  static constexpr float kTooNear = 0.05F;
+  static constexpr double kTooNear = 0.05;
 
   // The true range, to the unit.
   std::int64_t code_range(std::int32_t decoded, std::uint32_t context, std::int32_t truth) {
@@ -157,8 +159,11 @@ class ExactCoder {
 PointOrigins origins_of(const SensorModel* model, const BeamImage& image, std::size_t extras) {
   PointOrigins origins;
   if (model != nullptr && image.cols > 0) {
+    const Mount& mount = mount_of(*model, image.motion);
+    const Twist<double> twist(mount);
     for (const Beam& beam : model->beams) {
-      origins.height_m.push_back(static_cast<double>(beam.height) / kLengthUnits);
+      const std::array<double, 3> own{0.0, 0.0, static_cast<double>(beam.height) / kLengthUnits};
+      origins.beam_m.push_back(mount == Mount{} ? own : twist.redo(own, 1.0));
     }
     const auto cols = static_cast<std::size_t>(image.cols);
     for (std::size_t cell = 0; cell < image.cells(); ++cell) {
@@ -167,7 +172,7 @@ PointOrigins origins_of(const SensorModel* model, const BeamImage& image, std::s
       origins.range.push_back(image.range[cell]);
     }
   }
-  const auto none = static_cast<std::uint16_t>(origins.height_m.size());
+  const auto none = static_cast<std::uint16_t>(origins.beam_m.size());
   origins.row.resize(origins.row.size() + extras, none);
   return origins;
 }

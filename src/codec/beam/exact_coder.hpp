@@ -1,6 +1,7 @@
 // What is missing from decoded coordinates to the file's own: makes the codec lossless.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -16,10 +17,11 @@ namespace sweepcast::beam {
 struct PointOrigins {
   std::vector<std::uint16_t> row;   ///< of each point; the number of rows for those without a cell
   std::vector<std::int32_t> range;  ///< of each point of the image, 0.1 mm, as the image has it
-  std::vector<double> height_m;     ///< by row: of the beam's origin
+  std::vector<std::array<double, 3>> beam_m;  ///< by row: where the beam begins
 };
 
-/// The origins of an image's points and of `extras` more.
+/// The origins of an image's points and of `extras` more. A mount moves beams with their origins;
+/// of a deskewed sweep's motion they know nothing.
 [[nodiscard]] PointOrigins origins_of(const SensorModel* model, const BeamImage& image,
                                       std::size_t extras);
 

@@ -118,7 +118,8 @@ TEST(Lossless, CloudsOfNoSensor) {
 }
 
 TEST(Lossless, RangesInAUnitCostLess) {
-  PointOrigins origins{{}, {}, {0.0}};
+  PointOrigins origins;
+  origins.beam_m.push_back({0.0, 0.0, 0.0});
   PointCloud decoded, in_units, anywhere;
   std::vector<std::int32_t> ranges, others;
   std::mt19937 random(4);
