@@ -9,6 +9,7 @@
 
 #include "core/bytes.hpp"
 #include "core/crc32.hpp"
+#include "sweepcast/frame.hpp"
 
 namespace sweepcast::fuzz {
 

@@ -25,7 +25,7 @@ struct RunStates {
 /// Cells whose states are said at once where they are as expected.
 inline constexpr std::size_t kGroup = 8;
 
-/// Codes states. `kInputs` contexts are mixed: 1, 4 or 5.
+/// Codes states. `kInputs` contexts are mixed: 1, 2 or 5.
 template <std::size_t kInputs>
 class OccupancyCoder {
  public:
@@ -79,7 +79,7 @@ class OccupancyCoder {
 
  private:
   static constexpr int kTableBits = 13;
-  static constexpr std::size_t kGroupInputs = kInputs > 1 ? 4 : 1;
+  static constexpr std::size_t kGroupInputs = kInputs > 4 ? 4 : kInputs > 1 ? 2 : 1;
 
   // 0 unknown, 1 empty, 2 holds a point.
   static std::uint8_t known(CellState state) {
@@ -115,6 +115,8 @@ class OccupancyCoder {
     contexts[0] = (doubtful * 4U + (history_ & 3U)) * 8U + step;
     if constexpr (kGroupInputs > 1) {
       contexts[1] = doubt * 16U + (history_ & 15U);
+    }
+    if constexpr (kGroupInputs > 2) {
       contexts[2] = (history_ & 255U) * 4U + doubt / 2U;
       contexts[3] = doubt * 8U + step;
     }
@@ -134,15 +136,15 @@ class OccupancyCoder {
     typename BitMixer<kInputs>::Contexts contexts;
     contexts[0] = (near * 3U + before) * 8U + step;
     if constexpr (kInputs > 1) {
+      contexts[1] = hash_context((run.row * 9U + sides) * 3U + before, n);
+    }
+    if constexpr (kInputs > 2) {
       const std::uint32_t across = known(run.na[i]) * 3U + known(run.nb[i]);
       const std::uint32_t beyond = known(run.aa[i]) * 3U + known(run.bb[i]);
       const std::uint32_t nn = known(run.nn[i]);
-      contexts[1] = hash_context((run.row * 9U + sides) * 3U + before, n);
       contexts[2] = hash_context(near * 27U + across * 3U + nn, step);
       contexts[3] = ((sides * 9U + beyond) * 3U + n) * 8U + step;
-      if constexpr (kInputs > 4) {
-        contexts[4] = hash_context((sides * 9U + across) * 9U + n * 3U + nn, step);
-      }
+      contexts[4] = hash_context((sides * 9U + across) * 9U + n * 3U + nn, step);
     }
     return cell_.code(coder, contexts, sides * 9U + n * 3U + sa, occupied);
   }

@@ -9,7 +9,7 @@ namespace sweepcast::beam {
 namespace {
 
 using FastCoder = StepCoder<1, 1>;
-using NormalCoder = StepCoder<3, 4>;
+using NormalCoder = StepCoder<3, 2>;
 using BestCoder = StepCoder<4, 5>;
 
 // The weight of the upper of two rows for a row between, 1/256: a plane's inverse range is about

@@ -93,7 +93,7 @@ class StepCoder {
   }
 
  private:
-  static constexpr std::size_t kPicks = kResidualInputs > 1 ? 4 : 1;
+  static constexpr std::size_t kPicks = kResidualInputs > 3 ? 4 : kResidualInputs > 1 ? 2 : 1;
   using Pick = BitMixer<kPicks>;
 
   void predict_cells(const Run& run, std::size_t count) {
@@ -214,8 +214,10 @@ class StepCoder {
     typename Pick::Contexts contexts;
     contexts[0] = ((across * 8U + below) * 4U + goes_on) * 2U + rising;
     if constexpr (kPicks > 1) {
-      contexts[1] = (across * 4U + goes_on) * 2U + rising;
-      contexts[2] = jump * 8U + across;
+      contexts[1] = jump * 8U + across;
+    }
+    if constexpr (kPicks > 2) {
+      contexts[2] = (across * 4U + goes_on) * 2U + rising;
       contexts[3] = (across * 8U + below) * 8U + step;
     }
     const bool is_side = apart(range, between) > std::min(apart(range, a), apart(range, b));
