@@ -17,13 +17,14 @@ struct MadeSweep {
   int beams = 16;
   int firings = 240;
   std::uint32_t seed = 1;
-  double shift_m = 0.0;     ///< of the hall along x
-  double jitter_deg = 0.0;  ///< of each point's azimuth, as an interpolating driver makes it
-  int second_returns = 0;   ///< one point in so many has another behind it, at the same angles
-  bool deskewed = false;    ///< moved by a constant twist, as by a driving robot
-  bool by_rings = false;    ///< points come ring by ring instead of firing by firing
-  bool organised = false;   ///< by rings, with NaN where there is no return
-  bool attributes = false;  ///< intensity, ring and time
+  double shift_m = 0.0;      ///< of the hall along x
+  double jitter_deg = 0.0;   ///< of each point's azimuth, as an interpolating driver makes it
+  int second_returns = 0;    ///< one point in so many has another behind it, at the same angles
+  bool deskewed = false;     ///< moved by a constant twist, as by a driving robot
+  bool by_rings = false;     ///< points come ring by ring instead of firing by firing
+  bool organised = false;    ///< by rings, with NaN where there is no return
+  bool attributes = false;   ///< intensity, ring and time
+  bool millimetres = false;  ///< coordinates are whole ones
 };
 
 /// A number in [0, 1), a multiple of 2^-32.
@@ -45,9 +46,12 @@ inline PointCloud made_sweep(const MadeSweep& make) {
   std::mt19937 random(make.seed);
   PointCloud cloud;
   const auto add = [&](int beam, int firing, const std::array<double, 3>& p, double bright) {
-    cloud.x.push_back(static_cast<float>(p[0]));
-    cloud.y.push_back(static_cast<float>(p[1]));
-    cloud.z.push_back(static_cast<float>(p[2]));
+    const auto stored = [&](double v) {
+      return static_cast<float>(make.millimetres ? std::floor(v * 1000.0 + 0.5) / 1000.0 : v);
+    };
+    cloud.x.push_back(stored(p[0]));
+    cloud.y.push_back(stored(p[1]));
+    cloud.z.push_back(stored(p[2]));
     if (!make.attributes) return;
     cloud.intensity.push_back(static_cast<float>(static_cast<int>(bright * 200.0)));
     cloud.ring.push_back(static_cast<std::uint16_t>(beam));

@@ -67,7 +67,7 @@ inline std::vector<GoldenSource> golden_sources() {
     sources.push_back({name, options, made_sweep(make)});
   };
   const MadeSweep spinning;
-  const MadeSweep rich{.seed = 2, .second_returns = 40, .attributes = true};
+  const MadeSweep rich{.firings = 180, .seed = 2, .second_returns = 40, .attributes = true};
   add_beam("beam_fast", spinning, [](BeamOptions& o) { o.effort = Effort::fast; });
   add_beam("beam_normal", spinning, [](BeamOptions&) {});
   add_beam("beam_best", spinning, [](BeamOptions& o) { o.effort = Effort::best; });
@@ -90,7 +90,7 @@ inline std::vector<GoldenSource> golden_sources() {
     o.effort = Effort::best;
     o.intensity_step = 20;
   });
-  add_beam("beam_lossless", {.beams = 8, .firings = 180},
+  add_beam("beam_lossless", {.beams = 8, .firings = 180, .millimetres = true},
            [](BeamOptions& o) { o.lossless = true; });
   add_beam("beam_organised", {.organised = true}, [](BeamOptions& o) { o.keep_order = true; });
   EncoderOptions octree;
