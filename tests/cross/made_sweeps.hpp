@@ -55,7 +55,8 @@ inline PointCloud made_sweep(const MadeSweep& make) {
     if (!make.attributes) return;
     cloud.intensity.push_back(static_cast<float>(static_cast<int>(bright * 200.0)));
     cloud.ring.push_back(static_cast<std::uint16_t>(beam));
-    cloud.time_ns.push_back(std::int64_t{100'000'000} * firing / make.firings + 2'304 * beam);
+    cloud.time_ns.push_back(std::int64_t{100'000'000} * firing / make.firings +
+                            std::int64_t{2'304} * beam);
   };
   const auto measure = [&](int beam, int firing) {
     const double turns = static_cast<double>(firing) / make.firings - 0.5;
