@@ -180,6 +180,7 @@ void add_beam_options(CLI::App& app, BenchSettings& options) {
   app.add_option("--target-bytes", options.target_bytes, "Settings of beam: bytes of a frame")
       ->delimiter(',')
       ->allow_extra_args(false)
+      ->check(number_between(1, 1 << 28))
       ->type_name("N");
   app.add_option("--effort", options.efforts, "Efforts of beam: fast, default, best [default]")
       ->delimiter(',')

@@ -33,11 +33,11 @@ void add_bench_settings(CLI::App& app, BenchSettings& settings);
 
 /// Every codec at every setting, but for those that depend on the sweeps. Errors: those of the
 /// codecs; invalid_argument (--params).
-[[nodiscard]] Result<lab::Peers> make_peers(const BenchSettings& settings);
+[[nodiscard]] Result<lab::Peers> make_peers(const BenchSettings& options);
 
 /// Adds Draco at the coarsest step that keeps each of the bounds on all sweeps, where it is asked
 /// for. Errors: those of `read_cloud` and `lab::coarsest_draco_step`.
-[[nodiscard]] Status add_bounded_peers(const BenchSettings& settings,
+[[nodiscard]] Status add_bounded_peers(const BenchSettings& options,
                                        std::span<const std::filesystem::path> sweeps,
                                        lab::Peers& peers);
 

@@ -120,6 +120,10 @@ TEST_F(ToolTest, ListsTakeCommasOrWordsButNoInputs) {
     EXPECT_EQ(settings(options), "L0;L5;E 0.1 m;E 0.2 m;L0;L5;") << options;
   }
   EXPECT_EQ(settings("--levels 5 ./in"), "L5;L5;");
+  EXPECT_EQ(
+      settings("--codec beam --levels 1 3 --target-bytes 900 --effort fast,default --fill in"),
+      "L1 fast;L1;L3 fast;L3 fast fill;L3;L3 fill;"
+      "900 bytes fast;900 bytes fast fill;900 bytes;900 bytes fill;");
 }
 
 TEST_F(ToolTest, FailedBenchLeavesNoFile) {
