@@ -245,7 +245,8 @@ MotionVector MotionFitter::height_step(bool lines_free, double reach, double sca
       equations.add(robust(e, wide), e, slope);
     }
   }
-  for (const std::size_t about_z : {std::size_t{5}, std::size_t{11}}) hold(prior, about_z, motion);  // not seen
+  for (const std::size_t about_z : {std::size_t{5}, std::size_t{11}})
+    hold(prior, about_z, motion);  // not seen
   MotionVector moved = motion;
   add_to(moved, equations.solve(prior, motion));
   return moved;
