@@ -134,8 +134,10 @@ Result<Verified> verify_one(SweepReader& reader, std::size_t i, Workspace& work)
   if (status)
     status = check_counts(header.counts, work.original.size(), count_points(work.decoded));
   if (!status) return tl::unexpected(status.error());
-  return Verified{*name, header.counts, lab::compare(work.original, work.decoded),
-                  lab::attribute_errors(work.original, work.decoded, keeps_order(header))};
+  // Only the order tells which decoded point is which: the nearest one may be another's.
+  lab::AttributeErrors attributes;
+  if (keeps_order(header)) attributes = lab::attribute_errors(work.original, work.decoded);
+  return Verified{*name, header.counts, lab::compare(work.original, work.decoded), attributes};
 }
 
 ordered_json frame_json(const Verified& frame) {

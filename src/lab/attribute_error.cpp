@@ -6,40 +6,19 @@
 #include <cstdint>
 #include <vector>
 
-#include "lab/point_tree.hpp"
-
 namespace sweepcast::lab {
 namespace {
-
-using Eigen::Vector3d;
-
-Vector3d place(const PointCloud& cloud, std::size_t i) {
-  return {cloud.x[i], cloud.y[i], cloud.z[i]};
-}
 
 // Indices of the points that are finite and not at the origin.
 std::vector<std::size_t> usable(const PointCloud& cloud) {
   std::vector<std::size_t> indices;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Vector3d at = place(cloud, i);
-    if (at.allFinite() && !at.isZero(0.0)) indices.push_back(i);
+    const bool finite =
+        std::isfinite(cloud.x[i]) && std::isfinite(cloud.y[i]) && std::isfinite(cloud.z[i]);
+    const bool origin = cloud.x[i] == 0.0F && cloud.y[i] == 0.0F && cloud.z[i] == 0.0F;
+    if (finite && !origin) indices.push_back(i);
   }
   return indices;
-}
-
-// Of each original point its partner among the decoded ones.
-std::vector<std::size_t> nearest_partners(const PointCloud& original,
-                                          const std::vector<std::size_t>& from,
-                                          const PointCloud& decoded,
-                                          const std::vector<std::size_t>& to) {
-  std::vector<Vector3d> points;
-  points.reserve(to.size());
-  for (const std::size_t i : to) points.push_back(place(decoded, i));
-  const PointTree tree(points);
-  std::vector<std::size_t> partners;
-  partners.reserve(from.size());
-  for (const std::size_t i : from) partners.push_back(to[tree.nearest(place(original, i))]);
-  return partners;
 }
 
 template <class T>
@@ -72,18 +51,11 @@ void AttributeErrors::add(const AttributeErrors& other) {
   take_worse(time_ns, other.time_ns);
 }
 
-AttributeErrors attribute_errors(const PointCloud& original, const PointCloud& decoded,
-                                 bool same_order) {
+AttributeErrors attribute_errors(const PointCloud& original, const PointCloud& decoded) {
   const std::vector<std::size_t> from = usable(original);
-  std::vector<std::size_t> partners = usable(decoded);
+  const std::vector<std::size_t> partners = usable(decoded);
   AttributeErrors errors;
-  const bool any = (original.has_intensity() && decoded.has_intensity()) ||
-                   (original.has_ring() && decoded.has_ring()) ||
-                   (original.has_time() && decoded.has_time());
-  if (!any || from.empty() || partners.empty()) return errors;
-  if (!same_order || from.size() != partners.size()) {
-    partners = nearest_partners(original, from, decoded, partners);
-  }
+  if (from.empty() || from.size() != partners.size()) return errors;
   const auto worst = [&](const auto& a, const auto& b) -> std::optional<double> {
     if (a.empty() || b.empty()) return std::nullopt;
     double most = 0.0;

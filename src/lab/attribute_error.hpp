@@ -18,11 +18,9 @@ struct AttributeErrors {
   void add(const AttributeErrors& other);
 };
 
-/// Compares attributes. With `same_order` the points of both clouds, those left out that are not
-/// finite or at the origin, are pairs one by one, if they are equally many. Otherwise each original
-/// point's partner is the nearest decoded one: where points decode farther from their places than
-/// they lie apart, that may be another point's.
+/// Compares attributes of clouds in the same order: the points of both, those left out that are not
+/// finite or at the origin, are pairs one by one. Nothing is compared where they are not as many.
 [[nodiscard]] AttributeErrors attribute_errors(const PointCloud& original,
-                                               const PointCloud& decoded, bool same_order);
+                                               const PointCloud& decoded);
 
 }  // namespace sweepcast::lab
