@@ -67,7 +67,11 @@ TEST_F(ToolTest, WrongCommandLinesAreRefused) {
                                     "--rate nan",
                                     "--codec rcpcc --max-error 0.05",
                                     "--max-error 0.05 --max-range 20",
-                                    "--codec beam --level 1",
+                                    "--level 1 --max-error 0.05",
+                                    "--level 1 --target-bytes 5000",
+                                    "--target-bytes 0",
+                                    "--effort slow",
+                                    "--fields rgb",
                                     "--max-error 0",
                                     "--max-error nan"}) {
     expect_failure(run("encode a.bin -o x.sweep " + options), 2, {"see `sweepcast encode --help`"});
