@@ -223,7 +223,7 @@ Status Decoder::read_layers(std::span<const std::byte> frame, const FrameHeader&
     }
     if (!bytes) return tl::unexpected(bytes.error());
     // A layer whose attributes are cut off is left out whole.
-    const Status attributes = attributes_.check_layer(frame, header, layer);
+    Status attributes = attributes_.check_layer(frame, header, layer);
     if (!attributes && attributes.error().code == ErrorCode::truncated && layer > 0) {
       complete_ = false;
       break;

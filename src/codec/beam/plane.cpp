@@ -20,11 +20,12 @@ void interleave(const Plane& even, const Plane& odd, Plane& out) {
     const auto* a = from_even.data() + even.at(row, 0);
     const auto* b = from_odd.data() + odd.at(row, 0);
     auto* c = to.data() + out.at(row, 0);
-    for (int i = 0; i < odd.cols(); ++i) {
+    const std::ptrdiff_t pairs = odd.cols();
+    for (std::ptrdiff_t i = 0; i < pairs; ++i) {
       c[2 * i] = a[i];
       c[2 * i + 1] = b[i];
     }
-    if (even.cols() > odd.cols()) c[2 * odd.cols()] = a[odd.cols()];
+    if (even.cols() > odd.cols()) c[2 * pairs] = a[pairs];
   };
   for (int row = 0; row < even.rows(); ++row) {
     merge(even.range, odd.range, out.range, row);
