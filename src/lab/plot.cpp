@@ -18,9 +18,11 @@ struct Curve {
 std::vector<Curve> curves_of(std::span<const BenchRow> rows) {
   std::vector<Curve> curves;
   for (const BenchRow& row : rows) {
+    // What the decoder fills in is a curve of its own.
+    const std::string name = row.codec + (row.setting.ends_with(" fill") ? ", filled" : "");
     auto curve = std::find_if(curves.begin(), curves.end(),
-                              [&row](const Curve& c) { return c.codec == row.codec; });
-    if (curve == curves.end()) curve = curves.insert(curve, {row.codec, {}});
+                              [&name](const Curve& c) { return c.codec == name; });
+    if (curve == curves.end()) curve = curves.insert(curve, {name, {}});
     curve->rows.push_back(&row);
   }
   for (Curve& curve : curves) {
