@@ -121,22 +121,23 @@ void PartList::truncate(std::size_t count) {
   parts_.resize(count);
 }
 
+std::span<const std::byte> PartList::part(std::size_t i) const {
+  const std::size_t end = i + 1 == parts_.size() ? bytes_.size() : parts_[i + 1].begin;
+  return std::span(bytes_).subspan(parts_[i].begin, end - parts_[i].begin);
+}
+
 void write_frame(CodecId codec, const SweepInfo& info, const SweepCounts& counts,
                  const PartList& parts, std::vector<std::byte>& frame) {
   frame.clear();
   ByteWriter out(frame);
-  write_head(codec, info, counts, parts.parts_.size(), out);
-  const std::span<const std::byte> bytes = parts.bytes_;
-  for (std::size_t i = 0; i < parts.parts_.size(); ++i) {
-    const bool last = i + 1 == parts.parts_.size();
-    const std::size_t begin = parts.parts_[i].begin;
-    const std::size_t size = (last ? bytes.size() : parts.parts_[i + 1].begin) - begin;
-    out.put(parts.parts_[i].kind);
-    out.put_varint(size);
-    out.put(crc32(bytes.subspan(begin, size)));
+  write_head(codec, info, counts, parts.size(), out);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    out.put(parts.kind(i));
+    out.put_varint(parts.part(i).size());
+    out.put(crc32(parts.part(i)));
   }
   out.put(crc32(frame));
-  out.put_bytes(bytes);
+  for (std::size_t i = 0; i < parts.size(); ++i) out.put_bytes(parts.part(i));
 }
 
 std::size_t frame_size(CodecId codec, const SweepInfo& info, const SweepCounts& counts,
@@ -144,15 +145,12 @@ std::size_t frame_size(CodecId codec, const SweepInfo& info, const SweepCounts& 
   constexpr std::size_t kChecksum = sizeof(std::uint32_t);
   std::vector<std::byte> head;
   ByteWriter out(head);
-  write_head(codec, info, counts, parts.parts_.size() - first, out);
+  write_head(codec, info, counts, parts.size() - first, out);
   std::size_t size = kChecksum;
-  for (std::size_t i = first; i < parts.parts_.size(); ++i) {
-    const bool last = i + 1 == parts.parts_.size();
-    const std::size_t bytes =
-        (last ? parts.bytes_.size() : parts.parts_[i + 1].begin) - parts.parts_[i].begin;
-    out.put(parts.parts_[i].kind);
-    out.put_varint(bytes);
-    size += bytes + kChecksum;
+  for (std::size_t i = first; i < parts.size(); ++i) {
+    out.put(parts.kind(i));
+    out.put_varint(parts.part(i).size());
+    size += parts.part(i).size() + kChecksum;
   }
   return size + head.size();
 }

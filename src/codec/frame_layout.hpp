@@ -28,6 +28,9 @@ class PartList {
   [[nodiscard]] std::vector<std::byte>& bytes() { return bytes_; }
 
   [[nodiscard]] std::size_t size() const { return parts_.size(); }
+  [[nodiscard]] std::uint8_t kind(std::size_t i) const { return parts_[i].kind; }
+  /// The bytes of part `i`.
+  [[nodiscard]] std::span<const std::byte> part(std::size_t i) const;
   /// Forgets all but the first `count` parts.
   void truncate(std::size_t count);
 
@@ -38,11 +41,6 @@ class PartList {
   };
   std::vector<Part> parts_;
   std::vector<std::byte> bytes_;
-
-  friend void write_frame(CodecId codec, const SweepInfo& info, const SweepCounts& counts,
-                          const PartList& parts, std::vector<std::byte>& frame);
-  friend std::size_t frame_size(CodecId codec, const SweepInfo& info, const SweepCounts& counts,
-                                const PartList& parts, std::size_t first);
 };
 
 /// Assembles a frame. `info.sensor` has at most 255 bytes.
