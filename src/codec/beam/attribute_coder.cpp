@@ -83,13 +83,6 @@ class AnyIntensityCoder {
       coder_;
 };
 
-bool ran_dry(const RangeDecoder& coder) {
-  return coder.overran();
-}
-bool ran_dry(const RangeEncoder& /*coder*/) {
-  return false;
-}
-
 }  // namespace
 
 struct AttributeCoder::State {

@@ -61,11 +61,7 @@ Status Decoder::decode(std::span<const std::byte> frame, const FrameHeader& head
              !status) {
     return status;
   }
-  for (const LatticePoint& place : lattice_) {
-    placed_.x.push_back(static_cast<float>(place[0] * extras_step_m_));
-    placed_.y.push_back(static_cast<float>(place[1] * extras_step_m_));
-    placed_.z.push_back(static_cast<float>(place[2] * extras_step_m_));
-  }
+  append_places(lattice_, extras_step_m_, placed_);
   if (placed_.size() > header.counts.points_coded) {
     return fail(ErrorCode::corrupt, "the frame holds more points than its head announces");
   }

@@ -194,12 +194,8 @@ void Encoder::write_exact_part(std::span<const std::int32_t> ranges, PartList& p
     }
   }
   const double step = static_cast<double>(extras_step(error_m())) / kRangeUnits;
-  for (std::size_t i = 0; i < lattice_.size(); ++i) {
-    placed_.x.push_back(static_cast<float>(lattice_[i][0] * step));
-    placed_.y.push_back(static_cast<float>(lattice_[i][1] * step));
-    placed_.z.push_back(static_cast<float>(lattice_[i][2] * step));
-    add_truth(extra_points_[i]);
-  }
+  append_places(lattice_, step, placed_);
+  for (const std::uint32_t point : extra_points_) add_truth(point);
   parts.begin(static_cast<std::uint8_t>(Part::exact));
   const PointOrigins origins = origins_of(imager_.model(), image, lattice_.size());
   write_exact(placed_, origins, truth, ranges, parts.bytes());

@@ -40,14 +40,6 @@ LatticePoint point_of(std::uint64_t code) {
   return point;
 }
 
-// Whether damaged bytes have ended, so that a few of them cannot keep the decoder busy for long.
-bool ran_dry(const RangeDecoder& coder) {
-  return coder.overran();
-}
-bool ran_dry(const RangeEncoder& /*coder*/) {
-  return false;
-}
-
 // Walks the tree depth first. Each node says how many of its points lie in the lower half of each
 // axis in turn: a binary split of the Morton codes. Counts of one need a bit a level, no more.
 template <class Coder>
@@ -142,6 +134,14 @@ bool read_octree(std::span<const std::byte> bytes, std::vector<LatticePoint>& po
   TreeCoder<RangeDecoder>(coder).code(codes, 3 * kDepth, 0, 0);
   std::transform(codes.begin(), codes.end(), points.begin(), point_of);
   return !coder.overran();
+}
+
+void append_places(std::span<const LatticePoint> points, double step, PointCloud& cloud) {
+  for (const LatticePoint& point : points) {
+    cloud.x.push_back(static_cast<float>(point[0] * step));
+    cloud.y.push_back(static_cast<float>(point[1] * step));
+    cloud.z.push_back(static_cast<float>(point[2] * step));
+  }
 }
 
 }  // namespace sweepcast::beam

@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "sweepcast/cloud.hpp"
+
 namespace sweepcast::beam {
 
 /// A point on the lattice, in steps; each coordinate within +-2^20.
@@ -23,5 +25,8 @@ void write_octree(std::vector<LatticePoint>& points, std::vector<std::byte>& out
 /// The inverse. `points.size()` says how many there are; false where the bytes do not have that
 /// many.
 [[nodiscard]] bool read_octree(std::span<const std::byte> bytes, std::vector<LatticePoint>& points);
+
+/// Appends the points' coordinates to a cloud: `step` is the lattice's, metres.
+void append_places(std::span<const LatticePoint> points, double step, PointCloud& cloud);
 
 }  // namespace sweepcast::beam

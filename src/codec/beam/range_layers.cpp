@@ -24,15 +24,30 @@ std::int32_t row_weight(const std::vector<std::int32_t>& elevation, int row, int
   return static_cast<std::int32_t>(part * 256 / whole);
 }
 
+// A run that begins at `cell` of `plane`, its neighbours not yet said.
+Run run_at(Plane& plane, std::ptrdiff_t cell) {
+  Run run;
+  run.states.cell = plane.state.data() + cell;
+  run.range = plane.range.data() + cell;
+  run.activity = plane.activity.data() + cell;
+  return run;
+}
+
+// Says that the neighbours of one place are at `at` of `plane`; `state` is the place's in the run.
+void place_neighbour(const Plane& plane, std::ptrdiff_t at, Neighbours::Place which, Run& run,
+                     const CellState*& state) {
+  run.neighbours.range[which] = plane.range.data() + at;
+  if (which < Neighbours::kActive) run.neighbours.activity[which] = plane.activity.data() + at;
+  state = plane.state.data() + at;
+}
+
 // A run of cells at `cell` of `plane`, with neighbours at these distances in the plane: `along` to
 // the known ones on the axis that is halved, `across` on the other.
 Run run_within(Plane& plane, std::ptrdiff_t cell, std::ptrdiff_t along, std::ptrdiff_t across) {
   using N = Neighbours;
-  Run run;
+  Run run = run_at(plane, cell);
   const auto place = [&](N::Place which, std::ptrdiff_t at, const CellState*& state) {
-    run.neighbours.range[which] = plane.range.data() + at;
-    if (which < N::kActive) run.neighbours.activity[which] = plane.activity.data() + at;
-    state = plane.state.data() + at;
+    place_neighbour(plane, at, which, run, state);
   };
   RunStates& s = run.states;
   place(N::a, cell - along, s.a);
@@ -46,9 +61,6 @@ Run run_within(Plane& plane, std::ptrdiff_t cell, std::ptrdiff_t along, std::ptr
   place(N::bb, cell + 2 * along, s.bb);
   place(N::nn, cell - 2 * across, s.nn);
   run.neighbours.range[N::near] = run.neighbours.range[N::nn];
-  s.cell = plane.state.data() + cell;
-  run.range = plane.range.data() + cell;
-  run.activity = plane.activity.data() + cell;
   run.sequential = true;
   return run;
 }
@@ -70,15 +82,13 @@ void find_near(const Plane& plane, int row, std::vector<std::int32_t>& near) {
 // A row of the plane `odd`, whose columns lie between those of `even`.
 Run run_between(const Plane& even, Plane& odd, int row, std::vector<std::int32_t>& near) {
   using N = Neighbours;
-  Run run;
-  const auto place = [&](N::Place which, const Plane& plane, std::ptrdiff_t at,
-                         const CellState*& state) {
-    run.neighbours.range[which] = plane.range.data() + at;
-    if (which < N::kActive) run.neighbours.activity[which] = plane.activity.data() + at;
-    state = plane.state.data() + at;
-  };
   const std::ptrdiff_t known = even.at(row, 0);
   const std::ptrdiff_t fresh = odd.at(row, 0);
+  Run run = run_at(odd, fresh);
+  const auto place = [&](N::Place which, const Plane& plane, std::ptrdiff_t at,
+                         const CellState*& state) {
+    place_neighbour(plane, at, which, run, state);
+  };
   RunStates& s = run.states;
   place(N::a, even, known, s.a);
   place(N::b, even, known + 1, s.b);
@@ -92,9 +102,6 @@ Run run_between(const Plane& even, Plane& odd, int row, std::vector<std::int32_t
   place(N::nn, odd, fresh - 2 * odd.pitch(), s.nn);
   find_near(even, row, near);
   run.neighbours.range[N::near] = near.data();
-  s.cell = odd.state.data() + fresh;
-  run.range = odd.range.data() + fresh;
-  run.activity = odd.activity.data() + fresh;
   return run;
 }
 

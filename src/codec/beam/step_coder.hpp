@@ -30,14 +30,6 @@ struct Run {
   [[nodiscard]] Run from(std::size_t by) const;
 };
 
-/// Whether damaged bytes have ended, so that a few of them cannot keep the decoder busy for long.
-inline bool ran_dry(const RangeDecoder& coder) {
-  return coder.overran();
-}
-inline bool ran_dry(const RangeEncoder& /*coder*/) {
-  return false;
-}
-
 /// Codes runs. So many contexts are mixed for residuals and for states.
 template <std::size_t kResidualInputs, std::size_t kStateInputs>
 class StepCoder {

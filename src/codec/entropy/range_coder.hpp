@@ -104,4 +104,13 @@ class RangeDecoder {
   std::uint32_t code_ = 0;
 };
 
+/// Whether damaged bytes have ended, so that a few of them cannot keep the decoder busy for long.
+[[nodiscard]] inline bool ran_dry(const RangeDecoder& coder) {
+  return coder.overran();
+}
+/// The encoder's side of functions that serve both: never.
+[[nodiscard]] inline bool ran_dry(const RangeEncoder& /*coder*/) {
+  return false;
+}
+
 }  // namespace sweepcast
