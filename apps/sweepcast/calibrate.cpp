@@ -131,6 +131,19 @@ Json report_json(const SensorEstimate& estimate, const std::vector<fs::path>& fi
   return json;
 }
 
+/// The six numbers of a Motion or a Mount.
+template <class Pose>
+std::string pose_text(const Pose& pose) {
+  const auto metres = [&](std::size_t axis) {
+    return static_cast<double>(pose.translation[axis]) / kLengthUnits;
+  };
+  const auto degrees = [&](std::size_t axis) {
+    return static_cast<double>(pose.rotation[axis]) / kAngleUnits;
+  };
+  return fmt::format("{:.3f} {:.3f} {:.3f} m and {:.3f} {:.3f} {:.3f} degrees", metres(0),
+                     metres(1), metres(2), degrees(0), degrees(1), degrees(2));
+}
+
 void report_text(const SensorEstimate& estimate, const GridFigures& grid) {
   const SensorModel& model = estimate.model;
   const SensorResiduals& r = estimate.residuals;
@@ -148,28 +161,9 @@ void report_text(const SensorEstimate& estimate, const GridFigures& grid) {
       "explained  {:.3f} % of {} points within 5 mm, {:.3f} % within 2 cm, {:.3f} % within 5 cm\n",
       100 * r.share_5mm, r.points, 100 * r.share_2cm, 100 * r.share_5cm);
   if (!estimate.motions.empty()) {
-    const Motion& m = estimate.motions.front();
-    fmt::print(
-        "deskewed   by {:.3f} {:.3f} {:.3f} m and {:.3f} {:.3f} {:.3f} degrees a turn (first "
-        "sweep)\n",
-        static_cast<double>(m.translation[0]) / kLengthUnits,
-        static_cast<double>(m.translation[1]) / kLengthUnits,
-        static_cast<double>(m.translation[2]) / kLengthUnits,
-        static_cast<double>(m.rotation[0]) / kAngleUnits,
-        static_cast<double>(m.rotation[1]) / kAngleUnits,
-        static_cast<double>(m.rotation[2]) / kAngleUnits);
+    fmt::print("deskewed   by {} a turn (first sweep)\n", pose_text(estimate.motions.front()));
   }
-  if (model.mount != Mount{}) {
-    const Mount& m = model.mount;
-    fmt::print(
-        "mount      {:.3f} {:.3f} {:.3f} m and {:.3f} {:.3f} {:.3f} degrees from the cloud\n",
-        static_cast<double>(m.translation[0]) / kLengthUnits,
-        static_cast<double>(m.translation[1]) / kLengthUnits,
-        static_cast<double>(m.translation[2]) / kLengthUnits,
-        static_cast<double>(m.rotation[0]) / kAngleUnits,
-        static_cast<double>(m.rotation[1]) / kAngleUnits,
-        static_cast<double>(m.rotation[2]) / kAngleUnits);
-  }
+  if (model.mount != Mount{}) fmt::print("mount      {} from the cloud\n", pose_text(model.mount));
   fmt::print(
       "grid       {} of {} points in {} firings ({} collisions, {} strays), off by at most {:.2f} "
       "mm (p99)\n",
