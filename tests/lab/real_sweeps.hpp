@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <vector>
 
 #include "sweepcast/cloud.hpp"
@@ -26,6 +27,28 @@ inline std::vector<std::filesystem::path> real_sweeps(const char* folder) {
     if (entry.path().extension() == ".bin") paths.push_back(entry.path());
   }
   std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+/// The first sweep of each of these folders, as `real_sweeps` gives them.
+inline std::vector<std::filesystem::path> first_sweeps(std::initializer_list<const char*> folders) {
+  std::vector<std::filesystem::path> paths;
+  for (const char* folder : folders) {
+    const auto sweeps = real_sweeps(folder);
+    if (!sweeps.empty()) paths.push_back(sweeps.front());
+  }
+  return paths;
+}
+
+/// The sweeps of these names in the folder "nebula"; those that are there.
+inline std::vector<std::filesystem::path> nebula_sweeps(std::initializer_list<const char*> names) {
+  const char* data = std::getenv("SWEEPCAST_DATA");
+  std::vector<std::filesystem::path> paths;
+  if (data == nullptr) return paths;
+  for (const char* name : names) {
+    const auto path = std::filesystem::path(data) / "nebula" / name;
+    if (std::filesystem::exists(path)) paths.push_back(path);
+  }
   return paths;
 }
 

@@ -229,16 +229,8 @@ TEST(BeamAttributes, IntensitiesStayWithinHalfTheStep) {
 }
 
 TEST(BeamAttributes, RealSweepsKeepTheirs) {
-  std::vector<std::filesystem::path> paths;
-  for (const char* folder : {"kitti_hdl64", "kitti_odom00", "pandaset_pandar64"}) {
-    const auto sweeps = lab::real_sweeps(folder);
-    if (!sweeps.empty()) paths.push_back(sweeps.front());
-  }
-  const char* data = std::getenv("SWEEPCAST_DATA");
-  if (data != nullptr) {
-    const auto path = std::filesystem::path(data) / "nebula" / "vlp16.pcd";
-    if (std::filesystem::exists(path)) paths.push_back(path);
-  }
+  auto paths = lab::first_sweeps({"kitti_hdl64", "kitti_odom00", "pandaset_pandar64"});
+  for (const auto& path : lab::nebula_sweeps({"vlp16.pcd"})) paths.push_back(path);
   if (paths.empty()) GTEST_SKIP() << "set SWEEPCAST_DATA to a folder with real sweeps";
   for (const auto& path : paths) {
     SCOPED_TRACE(path.string());

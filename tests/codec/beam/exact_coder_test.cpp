@@ -164,16 +164,9 @@ TEST(Lossless, RangesInAUnitCostLess) {
 }
 
 TEST(Lossless, RealSweeps) {
-  std::vector<std::filesystem::path> paths;
-  for (const char* folder : {"kitti_hdl64", "kitti_0048", "kitti_odom00"}) {
-    const auto sweeps = lab::real_sweeps(folder);
-    if (!sweeps.empty()) paths.push_back(sweeps.front());
-  }
-  if (const char* data = std::getenv("SWEEPCAST_DATA"); data != nullptr) {
-    for (const char* name : {"vlp16.pcd", "hesai_xt32.pcd", "hesai_ot128.pcd"}) {
-      const auto path = std::filesystem::path(data) / "nebula" / name;
-      if (std::filesystem::exists(path)) paths.push_back(path);
-    }
+  auto paths = lab::first_sweeps({"kitti_hdl64", "kitti_0048", "kitti_odom00"});
+  for (const auto& path : lab::nebula_sweeps({"vlp16.pcd", "hesai_xt32.pcd", "hesai_ot128.pcd"})) {
+    paths.push_back(path);
   }
   if (paths.empty()) GTEST_SKIP() << "set SWEEPCAST_DATA to a folder with real sweeps";
   for (const auto& path : paths) {

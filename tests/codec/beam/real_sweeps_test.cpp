@@ -13,11 +13,8 @@ namespace {
 
 /// One sweep of each kind of sensor that is there; the PandaSet and odometry ones are deskewed.
 std::vector<std::filesystem::path> one_of_each() {
-  std::vector<std::filesystem::path> paths;
-  for (const char* folder : {"kitti_hdl64", "kitti_0048", "kitti_odom00", "pandaset_pandar64"}) {
-    const auto sweeps = lab::real_sweeps(folder);
-    if (!sweeps.empty()) paths.push_back(sweeps.front());
-  }
+  auto paths =
+      lab::first_sweeps({"kitti_hdl64", "kitti_0048", "kitti_odom00", "pandaset_pandar64"});
   const char* data = std::getenv("SWEEPCAST_DATA");
   if (data == nullptr || !std::filesystem::is_directory(std::filesystem::path(data) / "nebula")) {
     return paths;
