@@ -79,7 +79,9 @@ BeamLocator::BeamLocator(const SensorModel& model)
     const float above = heights[i] - beam.height;
     const float error = above - rho * beam.tan;
     const float along = (rho + above * beam.tan) * beam.inverse_slant;
-    const float q = beam.lateral * inverses[i];
+    const float sine = beam.lateral * inverses[i];
+    const std::int32_t is_aside = std::abs(sine) <= 0.5F ? 1 : 0;
+    const float q = is_aside != 0 ? sine : 0.0F;
     const float aside = (q + q * q * q * (1.0F / 6.0F)) * kInverseTurn;  // arc sine
     const float at = (out.turns[i] - aside) * ticks - beam.phase;
     const std::int32_t tick = nearest(at);
@@ -91,7 +93,6 @@ BeamLocator::BeamLocator(const SensorModel& model)
     const std::int32_t is_near = std::abs(error) <= max_height_error ? 1 : 0;
     const std::int32_t is_ahead = along > 1e-4F ? 1 : 0;
     const std::int32_t is_within = along < kMaxRange ? 1 : 0;
-    const std::int32_t is_aside = std::abs(q) <= 0.5F ? 1 : 0;
     out.found[i] &= is_near & is_ahead & is_within & is_aside;
     out.height_error[i] = error;
     out.miss[i] = at - static_cast<float>(tick);

@@ -91,15 +91,16 @@ template <std::size_t... K>
 }
 
 // By how much interpolation in inverse range, in which planes are linear, lies below interpolation
-// in range: w (1 - w) (a - b)^2 / ((1 - w) a + w b), for differences up to 16 m.
+// in range: w (1 - w) (a - b)^2 / ((1 - w) a + w b). Differences beyond 16 m, or beyond 8 to 16
+// times the range between, count as that: so products stay within 32 bits.
 [[gnu::always_inline]] inline std::int32_t bow(std::int32_t a, std::int32_t b, std::int32_t middle,
                                                std::int32_t weight) {
+  std::int32_t bin = middle >> 11;
+  bin = bin < 0 ? 0 : bin < 1023 ? bin : 1023;
+  const std::int32_t most = bin < 9 ? (bin + 1) << 14 : 160'000;
   const std::int32_t size = magnitude(a - b);
-  const std::int32_t apart = (size < 160'000 ? size : 160'000) >> 3;
-  const std::int32_t bin = middle >> 11;
-  const std::int32_t reciprocal = kReciprocal[static_cast<std::size_t>(bin < 0      ? 0
-                                                                       : bin < 1023 ? bin
-                                                                                    : 1023)];
+  const std::int32_t apart = (size < most ? size : most) >> 3;
+  const std::int32_t reciprocal = kReciprocal[static_cast<std::size_t>(bin)];
   const std::int32_t ratio = (((apart * apart) >> 8) * reciprocal) >> 10;
   return (ratio * ((weight * (256 - weight)) >> 4)) >> 12;
 }
