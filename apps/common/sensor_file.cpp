@@ -81,6 +81,9 @@ SensorModel model_from(const Json& json) {
     if (beam.contains("time_offset_deg")) {
       b.time_offset = units(beam, "time_offset_deg", kAngleUnits);
     }
+    if (beam.contains("interpolated_ticks")) {
+      b.interpolated = units(beam, "interpolated_ticks", 1.0);
+    }
     model.beams.push_back(b);
   }
   std::stable_sort(model.beams.begin(), model.beams.end(),
@@ -120,6 +123,7 @@ Json sensor_json(const SensorModel& model) {
          {"lateral_offset_m", static_cast<double>(beam.lateral_offset) / kLengthUnits},
          {"lag_ticks", beam.lag},
          {"time_offset_deg", static_cast<double>(beam.time_offset) / kAngleUnits}});
+    if (beam.interpolated != 0) json["beams"].back()["interpolated_ticks"] = beam.interpolated;
   }
   return json;
 }

@@ -23,7 +23,9 @@ inline constexpr std::int32_t kRangeUnits = 10'000;     ///< of ranges, per metr
 ///   z           = rho * tan_elevation + height
 ///   atan2(y, x) = t * 360 deg / ticks_per_turn + azimuth_offset + asin(lateral_offset / rho)
 /// Azimuths run counter-clockwise from x, seen from above. The beam measures at
-/// t = firing tick + lag; all beams of one firing share the firing tick.
+/// t = firing tick + lag; all beams of one firing share the firing tick. Drivers work out part of
+/// the lag from how far the sensor turns until the next firing; where they do not know (at a
+/// packet's end) they hold the firing's azimuth, and t = firing tick + lag - interpolated.
 struct Beam {
   std::int32_t tan_elevation = 0;   ///< 2^-24
   std::int32_t height = 0;          ///< 10 um, of the beam's origin above the sensor's
@@ -34,6 +36,7 @@ struct Beam {
   /// by azimuth, or not at all; else, deskewed by time stamps, the firing's azimuth less the
   /// beam's.
   std::int32_t time_offset = 0;
+  std::int32_t interpolated = 0;  ///< ticks of the lag that held firings lack
 
   [[nodiscard]] bool operator==(const Beam&) const = default;
 };
@@ -64,9 +67,9 @@ inline constexpr std::int32_t kMaxBeams = 1024;
 inline constexpr std::int32_t kMaxTicks = 1 << 20;
 
 /// Whether the numbers of a model are within their bounds: 1 to kMaxBeams beams in order, 1 to
-/// kMaxTicks ticks, |tan_elevation| at most 100, offsets of at most 10 m and 360 degrees, |lag| at
-/// most a turn, a mount of at most 100 m and 90 degrees. Error: invalid_argument, with the number
-/// at fault.
+/// kMaxTicks ticks, |tan_elevation| at most 100, offsets of at most 10 m and 360 degrees, |lag| and
+/// |interpolated| at most a turn, a mount of at most 100 m and 90 degrees. Error: invalid_argument,
+/// with the number at fault.
 [[nodiscard]] Status check(const SensorModel& model);
 
 /// A constant twist that a deskewed sweep was moved by. The sensor's own point p relates to the

@@ -73,6 +73,7 @@ SensorModel spherical(SensorModel model) {
     beam.azimuth_offset = 0;
     beam.lateral_offset = 0;
     beam.lag = 0;
+    beam.interpolated = 0;
   }
   return model;
 }
@@ -124,7 +125,7 @@ class Scene {
     Pieces pieces;
     pieces.layers = layer_bytes(plan);
     bytes_.clear();
-    beam::write_firings(image_.firing_tick, bytes_);
+    beam::write_firings(image_.firing_tick, bytes_, image_.held);
     pieces.firings = bytes_.size();
     std::vector<std::uint32_t> extras;
     for (const ExtraPoint& extra : image_.extras) {

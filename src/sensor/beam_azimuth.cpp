@@ -6,6 +6,7 @@
 #include <complex>
 
 #include "core/trig.hpp"
+#include "sensor/held_firings.hpp"
 
 namespace sweepcast {
 namespace {
@@ -187,6 +188,9 @@ class LagFinder {
     return count;
   }
 
+  // The ticks of each beam's points in the first sweep.
+  [[nodiscard]] std::span<const std::vector<int>> ticks() const { return ticks_.front(); }
+
   // Beams, the one of most points first.
   [[nodiscard]] std::vector<std::size_t> order() const {
     std::vector<std::size_t> beams(beams_.size());
@@ -284,6 +288,18 @@ void fit_lags(std::span<const BeamSamples> sweeps, int ticks_per_turn,
     }
   }
   std::copy(best.begin(), best.end(), beams.begin());
+}
+
+void split_lags(std::span<const BeamSamples> sweeps, int ticks_per_turn,
+                std::span<BeamAzimuth> beams) {
+  const LagFinder finder(sweeps.first(1), ticks_per_turn, beams);
+  std::vector<std::int32_t> lags;
+  for (const BeamAzimuth& beam : beams) lags.push_back(beam.lag);
+  const auto interpolated = fit_interpolation(finder.ticks(), lags, ticks_per_turn);
+  for (std::size_t k = 0; k < beams.size(); ++k) {
+    beams[k].lag = lags[k];
+    beams[k].interpolated = interpolated[k];
+  }
 }
 
 }  // namespace sweepcast

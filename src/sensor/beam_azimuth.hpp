@@ -26,6 +26,7 @@ struct BeamAzimuth {
   double phase = 0.0;  ///< ticks, [-1/2, 1/2)
   double lateral_m = 0.0;
   int lag = 0;             ///< ticks
+  int interpolated = 0;    ///< ticks of the lag that held firings lack
   double coherence = 0.0;  ///< 1: every azimuth a whole tick; about 0: anywhere
 };
 
@@ -62,5 +63,10 @@ struct BeamAzimuth {
 /// smaller shift does as well (firings at equal distances), the smaller.
 void fit_lags(std::span<const BeamSamples> sweeps, int ticks_per_turn,
               std::span<BeamAzimuth> beams);
+
+/// Sets what part of the lags is interpolated, where some firings seem to be held; lags may change
+/// by the distance of two firings.
+void split_lags(std::span<const BeamSamples> sweeps, int ticks_per_turn,
+                std::span<BeamAzimuth> beams);
 
 }  // namespace sweepcast

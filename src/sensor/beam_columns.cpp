@@ -5,6 +5,7 @@
 namespace sweepcast {
 
 std::span<const std::int32_t> ColumnFinder::find(std::span<const FiringPlace> places,
+                                                 std::span<const std::uint8_t> held,
                                                  int ticks_per_turn, int beams, int jitter,
                                                  std::vector<std::int32_t>& firing_tick) {
   column_.assign(static_cast<std::size_t>(ticks_per_turn), -1);
@@ -16,7 +17,7 @@ std::span<const std::int32_t> ColumnFinder::find(std::span<const FiringPlace> pl
   if (jitter == 0) {
     one_each(firing_tick);
   } else {
-    gather(places, beams, jitter, firing_tick);
+    gather(places, held, beams, jitter, firing_tick);
   }
   return column_;
 }
@@ -29,8 +30,8 @@ void ColumnFinder::one_each(std::vector<std::int32_t>& firing_tick) {
   }
 }
 
-void ColumnFinder::gather(std::span<const FiringPlace> places, int beams, int jitter,
-                          std::vector<std::int32_t>& firing_tick) {
+void ColumnFinder::gather(std::span<const FiringPlace> places, std::span<const std::uint8_t> held,
+                          int beams, int jitter, std::vector<std::int32_t>& firing_tick) {
   const std::size_t words = (static_cast<std::size_t>(beams) + 63) / 64;
   slot_.assign(count_.size(), 0);
   std::int32_t slots = 0;
@@ -55,6 +56,7 @@ void ColumnFinder::gather(std::span<const FiringPlace> places, int beams, int ji
     const auto tick = static_cast<std::int32_t>(t);
     const auto set = set_of(slot_[t]);
     bool joins = first >= 0 && tick - first <= jitter;
+    if (!held.empty()) joins = joins && held[t] == held[static_cast<std::size_t>(first)];
     for (std::size_t w = 0; w < words; ++w) joins = joins && (set[w] & column[w]) == 0;
     if (!joins) {
       std::fill(column.begin(), column.end(), 0);

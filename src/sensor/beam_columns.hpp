@@ -20,14 +20,16 @@ class ColumnFinder {
   /// Fills `firing_tick` with the columns' ticks, in order, and returns the column of every tick
   /// (-1 where no point has it). With jitter 0 every tick that occurs is a column. Else ticks at
   /// most `jitter` after the first of a column join it as long as no beam would be there twice;
-  /// the column's tick is the one of most points.
-  std::span<const std::int32_t> find(std::span<const FiringPlace> places, int ticks_per_turn,
+  /// the column's tick is the one of most points. `held`: per tick, whether the firing was held;
+  /// such ones share no column with others; empty: none is.
+  std::span<const std::int32_t> find(std::span<const FiringPlace> places,
+                                     std::span<const std::uint8_t> held, int ticks_per_turn,
                                      int beams, int jitter, std::vector<std::int32_t>& firing_tick);
 
  private:
   void one_each(std::vector<std::int32_t>& firing_tick);
-  void gather(std::span<const FiringPlace> places, int beams, int jitter,
-              std::vector<std::int32_t>& firing_tick);
+  void gather(std::span<const FiringPlace> places, std::span<const std::uint8_t> held, int beams,
+              int jitter, std::vector<std::int32_t>& firing_tick);
 
   std::vector<std::int32_t> column_;  // per tick
   std::vector<std::int32_t> count_;   // per tick: points

@@ -22,6 +22,9 @@ struct BeamGeometry {
 
 [[nodiscard]] std::vector<BeamGeometry> beam_geometry(const SensorModel& model);
 
+/// By beam, the ticks of its lag that held firings lack; empty where no firing is ever held.
+[[nodiscard]] std::vector<std::int32_t> interpolated_lags(const SensorModel& model);
+
 /// Turns by which a beam's lateral offset turns its points at a horizontal distance: the arc sine
 /// of their ratio, to the third order.
 [[nodiscard]] inline double lateral_turns(const BeamGeometry& beam, double rho) {

@@ -7,6 +7,7 @@
 #include "core/trig.hpp"
 #include "sensor/beam_columns.hpp"
 #include "sensor/beam_locate.hpp"
+#include "sensor/held_firings.hpp"
 #include "sensor/motion.hpp"
 
 namespace sweepcast {
@@ -51,7 +52,10 @@ struct BeamProjector::State {
   };
 
   explicit State(const SensorModel& sensor)
-      : model(sensor), geometry(beam_geometry(sensor)), locator(sensor) {
+      : model(sensor),
+        geometry(beam_geometry(sensor)),
+        interpolated(interpolated_lags(sensor)),
+        locator(sensor) {
     for (const Beam& beam : model.beams) {
       has_time_offsets = has_time_offsets || beam.time_offset != 0;
     }
@@ -79,8 +83,10 @@ struct BeamProjector::State {
 
   SensorModel model;
   std::vector<BeamGeometry> geometry;
+  std::vector<std::int32_t> interpolated;  // by beam; empty where no firing is ever held
   BeamLocator locator;
   LocatedPoints located;
+  HeldFirings held_firings;
   ColumnFinder columns;
   bool has_time_offsets = false;
 
@@ -108,7 +114,8 @@ void BeamProjector::State::locate_batch(std::size_t begin, std::size_t end,
                        located.range[i] <= options.farthest;
     places[begin + i] = {found ? located.firing[i] : -1,
                          static_cast<std::uint16_t>(located.beam[i])};
-    if (!found) reasons[begin + i] = why_lost(px[begin + i], py[begin + i], pz[begin + i]);
+    reasons[begin + i] =
+        found ? ExtraReason::misfit : why_lost(px[begin + i], py[begin + i], pz[begin + i]);
   }
 }
 
@@ -223,8 +230,15 @@ bool BeamProjector::State::takes(std::size_t i, const BeamImage& image, std::siz
 
 void BeamProjector::State::fill(const BeamGridOptions& options, BeamImage& image) {
   const int jitter = options.max_error_m > 0.0 ? model.jitter : 0;
-  const auto column_of = columns.find(places, model.ticks_per_turn,
+  std::span<const std::uint8_t> held;  // by tick
+  if (!interpolated.empty()) held = held_firings.find(places, interpolated, model.ticks_per_turn);
+  const auto column_of = columns.find(places, held, model.ticks_per_turn,
                                       static_cast<int>(geometry.size()), jitter, image.firing_tick);
+  image.held.clear();
+  if (!held.empty()) {
+    for (const std::int32_t tick : image.firing_tick)
+      image.held.push_back(held[static_cast<std::size_t>(tick)]);
+  }
   image.rows = static_cast<int>(geometry.size());
   image.cols = static_cast<int>(image.firing_tick.size());
   image.range.assign(image.cells(), 0);

@@ -34,11 +34,13 @@ inline constexpr std::uint32_t kNoPoint = 0xFFFFFFFF;
 
 /// Ranges along the beams. Planes are row-major: cell (row, col) is at row * cols + col.
 /// Row k is beam k of the model; column j is a firing, at tick `firing_tick[j]`; the beam of cell
-/// (k, j) looks at tick `firing_tick[j] + lag[k]`, modulo a turn.
+/// (k, j) looks at tick `firing_tick[j] + lag[k]`, modulo a turn; less `interpolated[k]` where the
+/// firing was held.
 struct BeamImage {
   int rows = 0;
   int cols = 0;
   std::vector<std::int32_t> firing_tick;  ///< increasing, in [0, ticks_per_turn)
+  std::vector<std::uint8_t> held;         ///< by column: 1 where the firing was held; empty: none
   /// Distance from the beam's origin (0, 0, height) along the beam, 0.1 mm; 0 where empty.
   std::vector<std::int32_t> range;
   std::vector<std::uint32_t> point;  ///< index of the cell's point in the cloud, or kNoPoint
@@ -114,11 +116,13 @@ class BeamUnprojector {
   explicit BeamUnprojector(const SensorModel& model);
 
   /// Fills the coordinates of `cloud`, one point for each cell with a range, row by row.
-  /// Uses rows, cols, firing_tick, range and the residuals of `image`. Same bits on every machine.
+  /// Uses rows, cols, firing_tick, held, range and the residuals of `image`. Same bits on every
+  /// machine.
   void unproject(const BeamImage& image, PointCloud& cloud);
 
  private:
   void decode_row(const BeamImage& image, int k);
+  void hold(const BeamImage& image, int k);
   void add_residuals(const BeamImage& image, int k);
   void redo_motion(const BeamImage& image, int k);
   void redo_mount(const Mount& mount);

@@ -64,9 +64,24 @@ void BeamUnprojector::decode_row(const BeamImage& image, int k) {
     y_[j] = static_cast<float>(rho * (s * ahead + c * aside));
     z_[j] = static_cast<float>(rho * beam.tan + beam.height_m);
   }
+  if (!image.held.empty()) hold(image, k);
   if (!image.azimuth_residual.empty()) add_residuals(image, k);
   if (image.motion) redo_motion(image, k);
   if (const Mount& mount = mount_of(model_, image.motion); mount != Mount{}) redo_mount(mount);
+}
+
+// Turns the points of held firings back by what was not interpolated.
+void BeamUnprojector::hold(const BeamImage& image, int k) {
+  const std::int32_t ticks = model_.beams[static_cast<std::size_t>(k)].interpolated;
+  if (ticks == 0) return;
+  const SinCos back = sin_cos(-kTurn * ticks / model_.ticks_per_turn);
+  for (std::size_t j = 0; j < x_.size(); ++j) {
+    if (image.held[j] == 0) continue;
+    const double x = x_[j];
+    const double y = y_[j];
+    x_[j] = static_cast<float>(x * back.cos - y * back.sin);
+    y_[j] = static_cast<float>(y * back.cos + x * back.sin);
+  }
 }
 
 void BeamUnprojector::add_residuals(const BeamImage& image, int k) {

@@ -61,6 +61,9 @@ Status check(const SensorModel& model) {
     if (!within(beam.time_offset, kMaxAngle))
       return wrong(name + ": time_offset beyond 360 degrees");
     if (!within(beam.lag, model.ticks_per_turn)) return wrong(name + ": lag beyond a turn");
+    if (!within(beam.interpolated, model.ticks_per_turn)) {
+      return wrong(name + ": interpolated lag beyond a turn");
+    }
     if (k > 0 && beam.tan_elevation > model.beams[k - 1].tan_elevation) {
       return wrong(name + ": not below the one before; beams go from the highest down");
     }
@@ -80,6 +83,14 @@ Status check(const Motion& motion, const SensorModel& model) {
       ErrorCode::invalid_argument,
       "motion: beyond 1 km, 90 degrees or a turn's ticks, or its mount beyond 100 m; no robot "
       "moves so in a sweep");
+}
+
+std::vector<std::int32_t> interpolated_lags(const SensorModel& model) {
+  std::vector<std::int32_t> ticks;
+  for (const Beam& beam : model.beams) ticks.push_back(beam.interpolated);
+  const bool any = std::any_of(ticks.begin(), ticks.end(), [](std::int32_t t) { return t != 0; });
+  if (!any) ticks.clear();
+  return ticks;
 }
 
 std::vector<BeamGeometry> beam_geometry(const SensorModel& model) {

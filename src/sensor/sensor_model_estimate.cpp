@@ -8,6 +8,7 @@
 #include "sensor/beam_columns.hpp"
 #include "sensor/beam_geometry.hpp"
 #include "sensor/beam_lines.hpp"
+#include "sensor/held_firings.hpp"
 #include "sensor/sensor_estimate.hpp"
 #include "sweepcast/sensor_model.hpp"
 
@@ -16,6 +17,7 @@ namespace {
 
 constexpr double kTurn = 2.0 * kPi;
 constexpr std::size_t kMinPoints = 500;
+constexpr double kClearly = 0.95;    // fewer columns than this share are clearly fewer
 constexpr double kRounding = 0.003;  // metres: scale of height residuals of a crisp beam
 
 // The points of all sweeps that are looked at, in the sensor's frame.
@@ -141,6 +143,7 @@ SensorModel model_of(const std::vector<BeamLine>& lines, const std::vector<BeamA
     beam.azimuth_offset = quantised(azimuths[k].phase * 360.0 / ticks, kAngleUnits);
     beam.lateral_offset = quantised(azimuths[k].lateral_m, kLengthUnits);
     beam.lag = azimuths[k].lag - lags[lags.size() / 2];
+    beam.interpolated = azimuths[k].interpolated;
     model.beams.push_back(beam);
   }
   return model;
@@ -214,8 +217,14 @@ SensorResiduals residuals_of(const Samples& samples, const SensorModel& model) {
   return residuals;
 }
 
+struct Jitter {
+  std::int32_t ticks = 0;
+  std::size_t columns = 0;  ///< that a sweep has with it
+  std::size_t apart = 0;    ///< that it has without
+};
+
 // The smallest jitter that brings the number of columns down; 0 where none does so clearly.
-int find_jitter(const BeamSamples& sweep, const SensorModel& model) {
+Jitter find_jitter(const BeamSamples& sweep, const SensorModel& model) {
   const std::vector<BeamGeometry> beams = beam_geometry(model);
   std::vector<FiringPlace> places;
   for (std::size_t i = 0; i < sweep.size(); ++i) {
@@ -227,22 +236,41 @@ int find_jitter(const BeamSamples& sweep, const SensorModel& model) {
     places.push_back(
         {tick < 0 ? tick + model.ticks_per_turn : tick, static_cast<std::uint16_t>(k)});
   }
+  HeldFirings holds;
+  std::span<const std::uint8_t> held;
+  const std::vector<std::int32_t> interpolated = interpolated_lags(model);
+  if (!interpolated.empty()) held = holds.find(places, interpolated, model.ticks_per_turn);
   ColumnFinder finder;
   std::vector<std::int32_t> ticks;
   const auto columns = [&](int jitter) {
-    (void)finder.find(places, model.ticks_per_turn, static_cast<int>(beams.size()), jitter, ticks);
-    return static_cast<double>(ticks.size());
+    (void)finder.find(places, held, model.ticks_per_turn, static_cast<int>(beams.size()), jitter,
+                      ticks);
+    return ticks.size();
   };
-  const double apart = columns(0);
-  int best = 0;
-  double fewest = 0.75 * apart;
+  const auto much_below = [](std::size_t few, double share, std::size_t many) {
+    return static_cast<double>(few) < share * static_cast<double>(many);
+  };
+  Jitter best{0, columns(0), columns(0)};
   for (const int jitter : {1, 2, 3, 4, 6, 8, 10, 12, 14, 16, 20, 24, 32}) {
-    if (const double count = columns(jitter); count < 0.97 * fewest) {
-      best = jitter;
-      fewest = count;
-    }
+    const std::size_t count = columns(jitter);
+    const bool clearly = best.ticks == 0 ? much_below(count, kClearly, best.apart)
+                                         : much_below(count, 0.97, best.columns);
+    if (clearly) best = {jitter, count, best.apart};
   }
   return best;
+}
+
+// Where a driver holds firings the columns get fewer by a model that knows.
+void look_for_held_firings(const Samples& samples, const std::vector<BeamLine>& lines,
+                           std::vector<BeamAzimuth>& azimuths, SensorModel& model) {
+  const Jitter plain = find_jitter(samples.sweeps.front(), model);
+  model.jitter = plain.ticks;
+  split_lags(samples.sweeps, model.ticks_per_turn, azimuths);
+  SensorModel split = model_of(lines, azimuths, model.ticks_per_turn);
+  if (interpolated_lags(split).empty()) return;
+  const Jitter found = find_jitter(samples.sweeps.front(), split);
+  split.jitter = found.ticks;
+  if (10 * found.apart < 9 * plain.apart) model = std::move(split);
 }
 
 }  // namespace
@@ -272,7 +300,7 @@ Result<SensorEstimate> estimate_still(std::span<const CloudView> sweeps, bool us
   }
   SensorEstimate estimate;
   estimate.model = model_of(lines, azimuths, ticks);
-  if (coherent) estimate.model.jitter = find_jitter(samples.sweeps.front(), estimate.model);
+  if (coherent) look_for_held_firings(samples, lines, azimuths, estimate.model);
   if (const Status sound = check(estimate.model); !sound) return tl::unexpected(sound.error());
   estimate.residuals = residuals_of(samples, estimate.model);
   return estimate;

@@ -33,7 +33,8 @@ TEST(Golden, FramesDecodeToTheSameClouds) {
   PointCloud cloud;
   for (const auto& path : paths) {
     const test::Bytes frame = read_bytes(path);
-    ASSERT_TRUE(decoder.decode(frame, cloud).has_value()) << path;
+    const Status decoded = decoder.decode(frame, cloud);
+    ASSERT_TRUE(decoded) << path << ": " << decoded.error().message;
     std::ifstream text(std::filesystem::path(path).replace_extension(".txt"));
     std::string label;
     std::size_t points = 0;

@@ -197,7 +197,8 @@ Status Decoder::read_layers(std::span<const std::byte> frame, const FrameHeader&
   const auto firings = checked_part(frame, header, static_cast<std::uint8_t>(Part::firings));
   if (!firings) return tl::unexpected(firings.error());
   image_.firing_tick.resize(static_cast<std::size_t>(image_.cols));
-  if (!read_firings(*firings, model_.ticks_per_turn, image_.firing_tick)) {
+  image_.held.resize(interpolated_lags(model_).empty() ? 0 : image_.firing_tick.size());
+  if (!read_firings(*firings, model_.ticks_per_turn, image_.firing_tick, image_.held)) {
     return fail(ErrorCode::corrupt, "the frame's firings cannot be right");
   }
   const bool residuals = image_.azimuth_divisor != 0;

@@ -254,7 +254,7 @@ void Encoder::write_grid(PartList& parts) {
   }
   if (image.cols == 0) return;
   parts.begin(static_cast<std::uint8_t>(Part::firings));
-  write_firings(image.firing_tick, parts.bytes());
+  write_firings(image.firing_tick, parts.bytes(), image.held);
 }
 
 // Puts the points without a cell on a lattice, and counts those that cannot be coded.

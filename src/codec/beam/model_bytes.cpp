@@ -9,7 +9,8 @@ namespace sweepcast::beam {
 namespace {
 
 constexpr std::array kNumbers = {&Beam::tan_elevation,  &Beam::height, &Beam::azimuth_offset,
-                                 &Beam::lateral_offset, &Beam::lag,    &Beam::time_offset};
+                                 &Beam::lateral_offset, &Beam::lag,    &Beam::time_offset,
+                                 &Beam::interpolated};
 
 // Steps between firings, less one: in unary while small, then by plain bits.
 class StepCoder {
@@ -45,6 +46,24 @@ class StepCoder {
   std::uint32_t history_ = 0;  // of the last 16 steps
 };
 
+// Whether firings are held: packets have equally many, so that what comes next follows from the
+// last dozen.
+class HoldCoder {
+ public:
+  template <class Coder>
+  bool code(Coder& coder, bool held) {
+    const BitMixer<3>::Contexts contexts{hash_context(history_ & 7U, 1U),
+                                         hash_context(history_ & 0xFFFU, 2U), 0U};
+    const bool result = mixer_.code(coder, contexts, 0, held);
+    history_ = history_ * 2U + (result ? 1U : 0U);
+    return result;
+  }
+
+ private:
+  BitMixer<3> mixer_{12, 1};
+  std::uint32_t history_ = 0;
+};
+
 void write_mount(const Mount& mount, ByteWriter& out) {
   for (const std::int32_t v : mount.translation) out.put_signed(v);
   for (const std::int32_t v : mount.rotation) out.put_signed(v);
@@ -64,10 +83,15 @@ void write_model(const SensorModel& model, ByteWriter& out) {
   write_mount(model.mount, out);
   out.put_varint(model.beams.size());
   for (const auto number : kNumbers) {
+    const std::int32_t first = model.beams.front().*number;
+    const bool all_alike = std::all_of(model.beams.begin(), model.beams.end(),
+                                       [&](const Beam& beam) { return beam.*number == first; });
+    out.put(static_cast<std::uint8_t>(all_alike ? 1 : 0));
     std::int64_t last = 0;
     for (const Beam& beam : model.beams) {
       out.put_signed(beam.*number - last);
       last = beam.*number;
+      if (all_alike) break;
     }
   }
 }
@@ -79,9 +103,11 @@ bool read_model(ByteReader& in, SensorModel& model) {
   read_mount(in, model.mount);
   model.beams.resize(in.get_varint(kMaxBeams));
   for (const auto number : kNumbers) {
+    const bool all_alike = in.get<std::uint8_t>() != 0;
     std::int64_t last = 0;
     for (Beam& beam : model.beams) {
-      const std::int64_t difference = in.get_signed();
+      const bool listed = !all_alike || &beam == &model.beams.front();
+      const std::int64_t difference = listed ? in.get_signed() : 0;
       if (difference > 0xFFFFFFFFLL || difference < -0xFFFFFFFFLL) return false;
       last += difference;
       if (last > 0x7FFFFFFFLL || last < -0x7FFFFFFFLL) return false;
@@ -109,26 +135,31 @@ Motion read_motion(ByteReader& in) {
   return motion;
 }
 
-void write_firings(const std::vector<std::int32_t>& ticks, std::vector<std::byte>& out) {
+void write_firings(std::span<const std::int32_t> ticks, std::vector<std::byte>& out,
+                   std::span<const std::uint8_t> held) {
   RangeEncoder coder(out);
   StepCoder steps;
+  HoldCoder holds;
   std::int32_t last = -1;
-  for (const std::int32_t tick : ticks) {
-    steps.code(coder, static_cast<std::uint32_t>(tick - last - 1));
-    last = tick;
+  for (std::size_t j = 0; j < ticks.size(); ++j) {
+    steps.code(coder, static_cast<std::uint32_t>(ticks[j] - last - 1));
+    if (!held.empty()) holds.code(coder, held[j] != 0);
+    last = ticks[j];
   }
   coder.finish();
 }
 
 bool read_firings(std::span<const std::byte> bytes, std::int32_t ticks_per_turn,
-                  std::vector<std::int32_t>& ticks) {
+                  std::span<std::int32_t> ticks, std::span<std::uint8_t> held) {
   RangeDecoder coder(bytes);
   StepCoder steps;
+  HoldCoder holds;
   std::int64_t last = -1;
-  for (std::int32_t& tick : ticks) {
+  for (std::size_t j = 0; j < ticks.size(); ++j) {
     last += std::int64_t{steps.code(coder, 0)} + 1;
     if (last >= ticks_per_turn || coder.overran()) return false;
-    tick = static_cast<std::int32_t>(last);
+    ticks[j] = static_cast<std::int32_t>(last);
+    if (!held.empty()) held[j] = holds.code(coder, false) ? 1 : 0;
   }
   return !coder.overran();
 }

@@ -22,12 +22,14 @@ void write_motion(const Motion& motion, ByteWriter& out);
 [[nodiscard]] Motion read_motion(ByteReader& in);
 
 /// Writes increasing ticks. They are nearly periodic: what the decoder has seen follow the last
-/// few steps is packed well.
-void write_firings(const std::vector<std::int32_t>& ticks, std::vector<std::byte>& out);
+/// few steps is packed well. `held`: of each, whether the firing was held; empty where the sensor's
+/// model has no interpolated lags.
+void write_firings(std::span<const std::int32_t> ticks, std::vector<std::byte>& out,
+                   std::span<const std::uint8_t> held = {});
 
-/// The inverse: fills `ticks`, whose size says how many. False unless they increase and are below
-/// `ticks_per_turn`.
+/// The inverse: fills `ticks`, whose size says how many, and `held`, as many or none. False unless
+/// ticks increase and are below `ticks_per_turn`.
 [[nodiscard]] bool read_firings(std::span<const std::byte> bytes, std::int32_t ticks_per_turn,
-                                std::vector<std::int32_t>& ticks);
+                                std::span<std::int32_t> ticks, std::span<std::uint8_t> held = {});
 
 }  // namespace sweepcast::beam

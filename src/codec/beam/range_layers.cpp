@@ -111,6 +111,7 @@ class AngleCoder {
   void begin() {
     mixer_.reset();
     last_ = 0;
+    last_negative_ = 0;
   }
 
   template <class Coder>

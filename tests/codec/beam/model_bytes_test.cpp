@@ -28,6 +28,7 @@ SensorModel random_model(std::mt19937& random) {
   model.direction = uniform_int(random, -1, 1);
   model.jitter = uniform_int(random, 0, std::min(3, model.ticks_per_turn));
   const int beams = random_bits(random) % 8 == 0 ? kMaxBeams : uniform_int(random, 1, 128);
+  const bool alike = random_bits(random) % 2 == 0;
   for (int k = 0; k < beams; ++k) {
     Beam beam;
     beam.tan_elevation = uniform_int(random, -100, 99) * kTangentUnits + uniform_int(random, 0, 99);
@@ -36,6 +37,8 @@ SensorModel random_model(std::mt19937& random) {
     beam.lateral_offset = uniform_int(random, -10 * kLengthUnits, 10 * kLengthUnits);
     beam.lag = uniform_int(random, -model.ticks_per_turn, model.ticks_per_turn);
     beam.time_offset = uniform_int(random, -360 * kAngleUnits, 360 * kAngleUnits);
+    beam.interpolated =
+        alike ? 7 % model.ticks_per_turn : uniform_int(random, -3, 3) % model.ticks_per_turn;
     model.beams.push_back(beam);
   }
   std::sort(model.beams.begin(), model.beams.end(),
@@ -136,6 +139,7 @@ TEST(ModelBytes, NumbersBeyondTheirBoundsAreRefused) {
   EXPECT_TRUE(is_refused([](SensorModel& m) { m.beams[0].tan_elevation = 101 * kTangentUnits; }));
   EXPECT_TRUE(is_refused([](SensorModel& m) { m.beams[1].height = 11 * kLengthUnits; }));
   EXPECT_TRUE(is_refused([](SensorModel& m) { m.beams[1].lag = 2001; }));
+  EXPECT_TRUE(is_refused([](SensorModel& m) { m.beams[1].interpolated = -2001; }));
   EXPECT_TRUE(is_refused([](SensorModel& m) { m.beams[1].time_offset = 361 * kAngleUnits; }));
   EXPECT_TRUE(is_refused([](SensorModel& m) { m.mount.translation[2] = -101 * kLengthUnits; }));
   EXPECT_TRUE(is_refused([](SensorModel& m) { m.mount.rotation[0] = 91 * kAngleUnits; }));
@@ -173,6 +177,24 @@ TEST(FiringBytes, PeriodicTicksCostLittle) {
   write_firings(ticks, bytes);
   EXPECT_LT(bytes.size(), 60U) << ticks.size() << " firings";
   EXPECT_EQ(back_of(bytes, ticks.size(), 4000), ticks);
+}
+
+TEST(FiringBytes, WhichFiringsAreHeldCostsLittle) {
+  std::vector<std::int32_t> ticks;
+  std::vector<std::uint8_t> held;
+  for (std::int32_t tick = 0; tick < 36'000; tick += 20) {
+    held.push_back(ticks.size() % 12 == 11 ? 1 : 0);
+    ticks.push_back(tick);
+  }
+  std::vector<std::byte> alone, both;
+  write_firings(ticks, alone);
+  write_firings(ticks, both, held);
+  EXPECT_LT(both.size(), alone.size() + 40U);
+  std::vector<std::int32_t> ticks_back(ticks.size());
+  std::vector<std::uint8_t> held_back(ticks.size(), 2);
+  EXPECT_TRUE(read_firings(both, 36'000, ticks_back, held_back));
+  EXPECT_EQ(ticks_back, ticks);
+  EXPECT_EQ(held_back, held);
 }
 
 TEST(FiringBytes, TicksBeyondTheTurnAreRefused) {

@@ -1,0 +1,39 @@
+// Firings whose azimuths a driver did not interpolate. Packets give an azimuth only once for many
+// beams that fire one after the other; drivers add to each beam's what the sensor turned meanwhile,
+// but not at a packet's end, where the next azimuth is not yet known.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sensor/beam_columns.hpp"
+
+namespace sweepcast {
+
+/// Tells which firings were held, and moves their points there; keeps its buffers.
+class HeldFirings {
+ public:
+  /// `places` as located with whole lags. `interpolated`: that part of each beam's lag that held
+  /// firings lack, ticks. Points of held firings get those firings' ticks; a point that fits
+  /// neither loses its place (tick -1). Returns per tick whether it is that of a held firing.
+  std::span<const std::uint8_t> find(std::span<FiringPlace> places,
+                                     std::span<const std::int32_t> interpolated,
+                                     int ticks_per_turn);
+
+ private:
+  std::vector<std::uint8_t> held_;        // per tick
+  std::vector<std::int32_t> as_turning_;  // per tick: points, taking firings for interpolated
+  std::vector<std::int32_t> as_held_;     // per tick: points, taking firings for held
+  std::vector<std::int32_t> votes_;       // per tick: points for held less those against
+};
+
+/// For each beam the part of its lag that the driver interpolates, ticks; 0 for all where no
+/// firings are held. `ticks`: per beam, the ticks at which its points lie, in [0, ticks_per_turn);
+/// `lags`: of the beams, which may have to change by the distance of two firings. Found where
+/// points of a beam miss the firings of the others always by the same ticks.
+[[nodiscard]] std::vector<std::int32_t> fit_interpolation(
+    std::span<const std::vector<std::int32_t>> ticks, std::span<std::int32_t> lags,
+    int ticks_per_turn);
+
+}  // namespace sweepcast
