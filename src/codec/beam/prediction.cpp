@@ -97,7 +97,8 @@ template <std::size_t... K>
                                                std::int32_t weight) {
   std::int32_t bin = middle >> 11;
   bin = bin < 0 ? 0 : bin < 1023 ? bin : 1023;
-  const std::int32_t most = bin < 9 ? (bin + 1) << 14 : 160'000;
+  const std::int32_t reach = (bin + 1) << 14;
+  const std::int32_t most = reach < 160'000 ? reach : 160'000;
   const std::int32_t size = magnitude(a - b);
   const std::int32_t apart = (size < most ? size : most) >> 3;
   const std::int32_t reciprocal = kReciprocal[static_cast<std::size_t>(bin)];
