@@ -217,6 +217,7 @@ template <bool kAll>
   std::array<std::int32_t*, Contexts::kCount> to{};
   for (std::size_t k = 0; k < Contexts::kCount; ++k) to[k] = out.of[k].data();
   std::int32_t* const means = out.mean.data();
+  std::int32_t* const turned = out.turned.data();
   const std::int32_t weight = at.weight;
   const PredictionScale levels = scale;
 #pragma GCC ivdep
@@ -249,11 +250,12 @@ template <bool kAll>
                                                                             : 255)];
     const std::int32_t firm = is_positive(basis);
 
-    means[i] = mean;
     to[Contexts::trust][i] = (basis * 10 + level_of(spreads[i], levels)) * 16 + mean;
+    turned[i] = is_positive(n) & is_positive(range - n);
+    if (!kAll) continue;
+    means[i] = mean;
     to[Contexts::direction][i] =
         ((basis * 21 + to_n) * 2 + is_positive(a - range)) * 2 + is_positive(b - range);
-    if (!kAll) continue;
     to[Contexts::slope][i] = ((firm * 21 + slope) * 21 + bend) * 11 + slope_n;
     to[Contexts::sides][i] = (basis * 21 + to_carried) * 21 + to_n;
     to[Contexts::distance][i] = ((firm * 16 + mean) * 21 + to_carried) * 16 + far;
@@ -312,6 +314,7 @@ void Predictions::resize(std::size_t count) {
 void Contexts::resize(std::size_t count) {
   for (auto& column : of) column.resize(count);
   mean.resize(count);
+  turned.resize(count);
 }
 
 PredictionScale::PredictionScale(std::int32_t step_of_ranges)

@@ -8,9 +8,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <type_traits>
 
 #include "codec/beam/occupancy_coder.hpp"
 #include "codec/beam/prediction.hpp"
+#include "codec/beam/quick_residual_coder.hpp"
 #include "codec/beam/residual_coder.hpp"
 #include "codec/entropy/mixer.hpp"
 #include "codec/entropy/range_coder.hpp"
@@ -256,7 +258,8 @@ class StepCoder {
   Predictions predictions_;
   Contexts contexts_;
   OccupancyCoder<kStateInputs> occupancy_;
-  ResidualCoder<kResidualInputs> residual_;
+  std::conditional_t<kResidualInputs == 1, QuickResidualCoder, ResidualCoder<kResidualInputs>>
+      residual_;
   Pick pick_{10, 4};
   BitMixer<3> skip_{10, 8};
 };
