@@ -96,6 +96,12 @@ void predict(const Neighbours& at, const PredictionScale& scale, std::size_t cou
 void describe(const Neighbours& at, const PredictionScale& scale, const Predictions& predictions,
               std::size_t count, bool all, Contexts& out);
 
+/// The same of cell `i` alone, whose neighbours may be cells just before it.
+void predict_one(const Neighbours& at, const PredictionScale& scale, std::size_t i,
+                 Predictions& out);
+void describe_one(const Neighbours& at, const PredictionScale& scale,
+                  const Predictions& predictions, std::size_t i, bool all, Contexts& out);
+
 /// The two ways to compute the same; `predict` and `describe` take the faster one.
 namespace plain {
 void predict(const Neighbours& at, const PredictionScale& scale, std::size_t count,

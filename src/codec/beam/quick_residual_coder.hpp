@@ -35,7 +35,8 @@ class QuickResidualCoder {
     const std::int32_t towards = (steps ^ -turned) + turned;
     const auto folded = static_cast<std::uint32_t>((towards * 2) ^ (towards >> 31));
     std::uint32_t symbol = small_.code(coder, context, std::min(folded, kLarge));
-    if (symbol == kLarge) symbol += code_large(coder, context % 16U, folded - std::min(folded, kLarge));
+    if (symbol == kLarge)
+      symbol += code_large(coder, context % 16U, folded - std::min(folded, kLarge));
     const auto unfolded = static_cast<std::int32_t>((symbol >> 1) ^ (0U - (symbol & 1U)));
     return (unfolded ^ -turned) + turned;
   }
