@@ -38,6 +38,7 @@ class StepCoder {
     occupancy_.reset();
     residual_.reset();
     pick_.reset();
+    side_.reset(kFirstSides);
     skip_.reset();
   }
 
@@ -135,7 +136,7 @@ class StepCoder {
   template <class Coder>
   void code_range(Coder& coder, const Run& run, std::size_t i, std::int32_t range) {
     const std::int32_t predicted = predictions_.range[i];
-    const std::int32_t wanted = in_steps(range - predicted);
+    const std::int32_t wanted = kDecodes<Coder> ? 0 : in_steps(range - predicted);
     const std::int32_t steps = residual_.code(coder, contexts_, i, predictions_.basis[i], wanted);
     const std::int64_t decoded = predicted + std::int64_t{steps} * scale_.step;
     run.range[i] =
@@ -236,13 +237,29 @@ class StepCoder {
       contexts[3] = (across * 8U + below) * 8U + step;
     }
     const bool is_side = apart(range, between) > std::min(apart(range, a), apart(range, b));
-    if (!pick_.code(coder, contexts, rising, is_side)) return;
-    typename Pick::Contexts second = contexts;
-    for (std::uint32_t& context : second) context += 512U;
-    const bool picked_b = pick_.code(coder, second, 2U + rising, apart(range, b) < apart(range, a));
-    predictions_.range[i] = picked_b ? b : a;
+    const Side side = code_side(coder, contexts, rising,
+                                !is_side                           ? Side::none
+                                : apart(range, b) < apart(range, a) ? Side::b
+                                                                    : Side::a);
+    if (side == Side::none) return;
+    predictions_.range[i] = side == Side::b ? b : a;
     predictions_.spread[i] = scale_.edge;
     predictions_.basis[i] = static_cast<std::int32_t>(Basis::side);
+  }
+
+  enum class Side : std::uint8_t { none, a, b };
+
+  template <class Coder>
+  Side code_side(Coder& coder, const typename Pick::Contexts& contexts, std::uint32_t rising,
+                 Side side) {
+    if constexpr (kPicks == 1) {
+      const std::uint32_t symbol = side_.code(coder, contexts[0], static_cast<std::uint32_t>(side));
+      return symbol > 2 ? Side::none : static_cast<Side>(symbol);
+    }
+    if (!pick_.code(coder, contexts, rising, side != Side::none)) return Side::none;
+    typename Pick::Contexts second = contexts;
+    for (std::uint32_t& context : second) context += 512U;
+    return pick_.code(coder, second, 2U + rising, side == Side::b) ? Side::b : Side::a;
   }
 
   // On which side of the jump the cell across lies: 0 and 1 where the jump is there too, 2 where
@@ -282,6 +299,15 @@ class StepCoder {
   OccupancyCoder<kStateInputs> occupancy_;
   std::conditional_t<kResidualInputs == 1, QuickResidualCoder, ResidualCoder<kResidualInputs>>
       residual_;
+  static constexpr SymbolShares kFirstSides = [] {
+    SymbolShares shares{};
+    for (std::size_t k = 1; k < kSymbols; ++k) {
+      shares.from[k] = static_cast<std::int16_t>(
+          k < 4 ? static_cast<int>(k) * 10'800 : (1 << kShareBits) - 16 * static_cast<int>(16 - k));
+    }
+    return shares;
+  }();
+  SymbolCoder side_{448};
   Pick pick_{10, 4};
   BitMixer<3> skip_{10, 8};
 };

@@ -5,17 +5,19 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 namespace sweepcast {
 
-/// Probabilities of a 1 are in 1/65536, from 1 to 65535.
+/// Probabilities of a 1 are in 1/65536, from 16 to 65520.
 inline constexpr int kProbabilityBits = 16;
 
 namespace range_detail {
 
-/// Ranges below are widened after each bit, so that a 1/65536 of one is not lost.
-inline constexpr std::uint32_t kLeast = std::uint32_t{1} << 25;
+/// Ranges below are widened before a bit is coded: so it leaves 2^15 at least, and widening takes
+/// 16 bits at most.
+inline constexpr std::uint32_t kLeast = std::uint32_t{1} << 27;
 
 /// Of a number that is not 0: std::bit_width takes care of that, which costs a branch.
 [[nodiscard]] inline std::uint32_t floor_log2(std::uint32_t v) {
@@ -38,10 +40,10 @@ class RangeEncoder {
   /// Codes `bit`, to which the model gives probability `p1` of being 1. Returns `bit`, as
   /// `RangeDecoder::code` does, so that one function can serve both directions.
   bool code(bool bit, std::uint32_t p1) {
+    if (range_ < range_detail::kLeast) normalise();
     const std::uint32_t one = range_detail::share(range_, p1);
     low_ += bit ? 0 : one;
     range_ = bit ? one : range_ - one;
-    if (range_ < range_detail::kLeast) normalise();
     return bit;
   }
 
@@ -56,7 +58,6 @@ class RangeEncoder {
   void narrow(std::uint32_t from, std::uint32_t to) {
     low_ += std::uint64_t{from} << 16;
     range_ = (to == 0 ? range_ : to << 16) - (from << 16);
-    if (range_ < range_detail::kLeast) normalise();
   }
 
   /// Writes what the decoder needs to tell the last bits.
@@ -80,18 +81,18 @@ class RangeEncoder {
   }
 
  private:
-  // Makes the range at least 2^31 again; writes the bytes that are there.
+  // Makes the range at least 2^31 again; writes two bytes once they are there.
   void normalise() {
     const int shift = 31 - static_cast<int>(range_detail::floor_log2(range_));
     range_ <<= shift;
     low_ <<= shift;
     pending_ += shift;
-    if (pending_ < 8) return;
-    if ((low_ >> (32 + pending_)) != 0) carry();
-    while (pending_ >= 8) {
-      pending_ -= 8;
-      out_.push_back(static_cast<std::byte>(low_ >> (32 + pending_)));
-    }
+    if (pending_ < 16) return;
+    pending_ -= 16;
+    const std::uint64_t ready = low_ >> (32 + pending_);
+    if ((ready >> 16) != 0) carry();
+    out_.push_back(static_cast<std::byte>(ready >> 8));
+    out_.push_back(static_cast<std::byte>(ready));
     low_ &= (std::uint64_t{1} << (32 + pending_)) - 1;
   }
 
@@ -106,7 +107,7 @@ class RangeEncoder {
   std::vector<std::byte>& out_;
   std::uint64_t low_ = 0;  // 32 bits, those pending above them, and a carry
   std::uint32_t range_ = 0xFFFFFFFFU;
-  int pending_ = 0;  // bits of `low_` to be written, below 8 between calls
+  int pending_ = 0;  // bits of `low_` to be written, below 16 between calls
 };
 
 /// Reads what `RangeEncoder` wrote. Past the end it reads zeros: damaged bytes give wrong bits,
@@ -119,12 +120,12 @@ class RangeDecoder {
 
   /// The next bit; the argument is for symmetry with the encoder and not used.
   bool code(bool /*bit*/, std::uint32_t p1) {
+    if (range_ < range_detail::kLeast) normalise();
     const std::uint32_t one = range_detail::share(range_, p1);
     const std::uint64_t from = std::uint64_t{one} << 32;
     const bool bit = rest_ < from;
     rest_ -= bit ? 0 : from;
     range_ = bit ? one : range_ - one;
-    if (range_ < range_detail::kLeast) normalise();
     return bit;
   }
 
@@ -141,7 +142,6 @@ class RangeDecoder {
   void narrow(std::uint32_t from, std::uint32_t to) {
     rest_ -= std::uint64_t{from} << 48;
     range_ = (to == 0 ? range_ : to << 16) - (from << 16);
-    if (range_ < range_detail::kLeast) normalise();
   }
 
   /// True where more was read than is there by over eight bytes, as only damage explains.
@@ -153,10 +153,10 @@ class RangeDecoder {
     range_ <<= shift;
     rest_ <<= shift;
     ahead_ -= shift;
-    while (ahead_ < 24) {
-      ahead_ += 8;
-      rest_ |= std::uint64_t{next()} << (32 - ahead_);
-    }
+    if (ahead_ >= 16) return;
+    ahead_ += 16;
+    const std::uint64_t high = next();
+    rest_ |= ((high << 8) | next()) << (32 - ahead_);
   }
 
   std::uint32_t next() {
@@ -168,8 +168,12 @@ class RangeDecoder {
   std::size_t at_ = 0;
   std::uint64_t rest_ = 0;  // what is read less what is passed: 32 bits of the range, then `ahead_`
   std::uint32_t range_ = 0xFFFFFFFFU;
-  int ahead_ = 32;  // bits read ahead of the range's 32, at least 24 between calls
+  int ahead_ = 32;  // bits read ahead of the range's 32, at least 16 between calls
 };
+
+/// Which way a function goes that serves both.
+template <class Coder>
+inline constexpr bool kDecodes = std::is_same_v<Coder, RangeDecoder>;
 
 /// Whether damaged bytes have ended, so that a few of them cannot keep the decoder busy for long.
 [[nodiscard]] inline bool ran_dry(const RangeDecoder& coder) {

@@ -105,7 +105,7 @@ class SymbolCoder {
   std::uint32_t code(Coder& coder, std::size_t context, std::uint32_t symbol) {
     SymbolShares& shares = shares_[context];
     const std::uint32_t width = coder.width();
-    if constexpr (requires { coder.place(); }) {
+    if constexpr (kDecodes<Coder>) {
       symbol = symbol_detail::find_symbol(shares, width, coder.place());
     }
     const bool last = symbol == kSymbols - 1;
