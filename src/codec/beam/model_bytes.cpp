@@ -1,8 +1,8 @@
 #include "codec/beam/model_bytes.hpp"
 
+#include <algorithm>
 #include <array>
 
-#include "codec/entropy/mixer.hpp"
 #include "codec/entropy/range_coder.hpp"
 
 namespace sweepcast::beam {
@@ -10,40 +10,6 @@ namespace {
 
 constexpr std::array kNumbers = {&Beam::tan_elevation,  &Beam::height, &Beam::azimuth_offset,
                                  &Beam::lateral_offset, &Beam::lag,    &Beam::time_offset};
-
-// Steps between firings, less one: in unary while small, then by plain bits.
-class StepCoder {
- public:
-  template <class Coder>
-  std::uint32_t code(Coder& coder, std::uint32_t step) {
-    std::uint32_t value = 0;
-    while (value < kUnary) {
-      const BitMixer<3>::Contexts contexts{hash_context(last_[0] * 32U + last_[1], value),
-                                           hash_context(history_, 100U + value),
-                                           hash_context(last_[5] * 32U + last_[0], 200U + value)};
-      if (!mixer_.code(coder, contexts, 0, step > value)) break;
-      ++value;
-    }
-    if (value == kUnary) {
-      std::uint32_t rest = 0;
-      for (int bit = 20; bit-- > 0;) {
-        const bool set = (((step - kUnary) >> bit) & 1U) != 0;
-        rest = rest * 2 + (coder.code(set, 32768) ? 1U : 0U);
-      }
-      value += rest;
-    }
-    std::copy_backward(last_.begin(), last_.end() - 1, last_.end());
-    last_[0] = std::min(value, 31U);
-    history_ = history_ * 4U + std::min(value, 3U);
-    return value;
-  }
-
- private:
-  static constexpr std::uint32_t kUnary = 24;
-  BitMixer<3> mixer_{12, 1};
-  std::array<std::uint32_t, 6> last_{};
-  std::uint32_t history_ = 0;  // of the last 16 steps
-};
 
 void write_mount(const Mount& mount, ByteWriter& out) {
   for (const std::int32_t v : mount.translation) out.put_signed(v);
@@ -109,24 +75,55 @@ Motion read_motion(ByteReader& in) {
   return motion;
 }
 
-void write_firings(const std::vector<std::int32_t>& ticks, std::vector<std::byte>& out) {
+// In unary while small, then by plain bits.
+template <class Coder>
+std::uint32_t FiringCoder::code(Coder& coder, std::uint32_t step) {
+  std::uint32_t value = 0;
+  while (value < kUnary) {
+    const BitMixer<3>::Contexts contexts{hash_context(last_[0] * 32U + last_[1], value),
+                                         hash_context(history_, 100U + value),
+                                         hash_context(last_[5] * 32U + last_[0], 200U + value)};
+    if (!mixer_.code(coder, contexts, 0, step > value)) break;
+    ++value;
+  }
+  if (value == kUnary) {
+    std::uint32_t rest = 0;
+    for (int bit = 20; bit-- > 0;) {
+      const bool set = (((step - kUnary) >> bit) & 1U) != 0;
+      rest = rest * 2 + (coder.code(set, 32768) ? 1U : 0U);
+    }
+    value += rest;
+  }
+  std::copy_backward(last_.begin(), last_.end() - 1, last_.end());
+  last_[0] = std::min(value, 31U);
+  history_ = history_ * 4U + std::min(value, 3U);
+  return value;
+}
+
+void FiringCoder::reset() {
+  mixer_.reset();
+  last_.fill(0);
+  history_ = 0;
+}
+
+void FiringCoder::write(std::span<const std::int32_t> ticks, std::vector<std::byte>& out) {
+  reset();
   RangeEncoder coder(out);
-  StepCoder steps;
   std::int32_t last = -1;
   for (const std::int32_t tick : ticks) {
-    steps.code(coder, static_cast<std::uint32_t>(tick - last - 1));
+    code(coder, static_cast<std::uint32_t>(tick - last - 1));
     last = tick;
   }
   coder.finish();
 }
 
-bool read_firings(std::span<const std::byte> bytes, std::int32_t ticks_per_turn,
-                  std::vector<std::int32_t>& ticks) {
+bool FiringCoder::read(std::span<const std::byte> bytes, std::int32_t ticks_per_turn,
+                       std::span<std::int32_t> ticks) {
+  reset();
   RangeDecoder coder(bytes);
-  StepCoder steps;
   std::int64_t last = -1;
   for (std::int32_t& tick : ticks) {
-    last += std::int64_t{steps.code(coder, 0)} + 1;
+    last += std::int64_t{code(coder, 0)} + 1;
     if (last >= ticks_per_turn || coder.overran()) return false;
     tick = static_cast<std::int32_t>(last);
   }

@@ -1,9 +1,13 @@
 // A sensor model, firings and motion as bytes.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "codec/entropy/mixer.hpp"
 #include "core/bytes.hpp"
 #include "sweepcast/sensor_model.hpp"
 
@@ -21,13 +25,26 @@ void write_motion(const Motion& motion, ByteWriter& out);
 /// The inverse; what it gives has yet to pass `check`.
 [[nodiscard]] Motion read_motion(ByteReader& in);
 
-/// Writes increasing ticks. They are nearly periodic: what the decoder has seen follow the last
-/// few steps is packed well.
-void write_firings(const std::vector<std::int32_t>& ticks, std::vector<std::byte>& out);
+/// Codes increasing ticks. They are nearly periodic: what the decoder has seen follow the last few
+/// steps is packed well. Keeps its tables.
+class FiringCoder {
+ public:
+  void write(std::span<const std::int32_t> ticks, std::vector<std::byte>& out);
 
-/// The inverse: fills `ticks`, whose size says how many. False unless they increase and are below
-/// `ticks_per_turn`.
-[[nodiscard]] bool read_firings(std::span<const std::byte> bytes, std::int32_t ticks_per_turn,
-                                std::vector<std::int32_t>& ticks);
+  /// The inverse: fills `ticks`, whose size says how many. False unless they increase and are below
+  /// `ticks_per_turn`.
+  [[nodiscard]] bool read(std::span<const std::byte> bytes, std::int32_t ticks_per_turn,
+                          std::span<std::int32_t> ticks);
+
+ private:
+  void reset();
+  template <class Coder>
+  std::uint32_t code(Coder& coder, std::uint32_t step);
+
+  static constexpr std::uint32_t kUnary = 24;
+  BitMixer<3> mixer_{12, 1};
+  std::array<std::uint32_t, 6> last_{};  // steps between firings, less one
+  std::uint32_t history_ = 0;            // of the last 16 steps
+};
 
 }  // namespace sweepcast::beam

@@ -144,7 +144,7 @@ TEST(ModelBytes, NumbersBeyondTheirBoundsAreRefused) {
 std::vector<std::int32_t> back_of(const std::vector<std::byte>& bytes, std::size_t count,
                                   std::int32_t turn) {
   std::vector<std::int32_t> ticks(count);
-  EXPECT_TRUE(read_firings(bytes, turn, ticks));
+  EXPECT_TRUE(FiringCoder().read(bytes, turn, ticks));
   return ticks;
 }
 
@@ -159,7 +159,7 @@ TEST(FiringBytes, TicksComeBack) {
     }
     if (i == 0) ticks.clear();
     std::vector<std::byte> bytes;
-    write_firings(ticks, bytes);
+    FiringCoder().write(ticks, bytes);
     EXPECT_EQ(back_of(bytes, ticks.size(), kMaxTicks), ticks);
   }
 }
@@ -170,7 +170,7 @@ TEST(FiringBytes, PeriodicTicksCostLittle) {
     ticks.push_back(tick);
   }
   std::vector<std::byte> bytes;
-  write_firings(ticks, bytes);
+  FiringCoder().write(ticks, bytes);
   EXPECT_LT(bytes.size(), 60U) << ticks.size() << " firings";
   EXPECT_EQ(back_of(bytes, ticks.size(), 4000), ticks);
 }
@@ -178,9 +178,9 @@ TEST(FiringBytes, PeriodicTicksCostLittle) {
 TEST(FiringBytes, TicksBeyondTheTurnAreRefused) {
   std::vector<std::int32_t> ticks{3, 500, 1999};
   std::vector<std::byte> bytes;
-  write_firings(ticks, bytes);
-  EXPECT_TRUE(read_firings(bytes, 2000, ticks));
-  EXPECT_FALSE(read_firings(bytes, 1999, ticks));
+  FiringCoder().write(ticks, bytes);
+  EXPECT_TRUE(FiringCoder().read(bytes, 2000, ticks));
+  EXPECT_FALSE(FiringCoder().read(bytes, 1999, ticks));
 }
 
 TEST(FiringBytes, DamagedBytesAreRefusedOrStillIncrease) {
@@ -189,7 +189,7 @@ TEST(FiringBytes, DamagedBytesAreRefusedOrStillIncrease) {
     std::vector<std::byte> bytes(static_cast<std::size_t>(uniform_int(random, 0, 200)));
     for (std::byte& byte : bytes) byte = static_cast<std::byte>(random_bits(random));
     std::vector<std::int32_t> ticks(static_cast<std::size_t>(uniform_int(random, 0, 300)));
-    if (!read_firings(bytes, 2000, ticks)) continue;
+    if (!FiringCoder().read(bytes, 2000, ticks)) continue;
     for (std::size_t k = 0; k < ticks.size(); ++k) {
       EXPECT_TRUE(ticks[k] < 2000 && ticks[k] > (k == 0 ? -1 : ticks[k - 1]));
     }
