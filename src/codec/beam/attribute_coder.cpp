@@ -279,7 +279,11 @@ void AttributeCoder::begin(const AttributeFormat& format, const LayerPlan* plan,
                            std::span<const std::int32_t> first_col) {
   State& s = *state_;
   s.format = format;
-  s.plan = plan != nullptr ? *plan : LayerPlan{};
+  if (plan != nullptr) {
+    s.plan = *plan;
+  } else {
+    s.plan = {};
+  }
   s.first_col.assign(first_col.begin(), first_col.end());
   s.numbers.reset();
   s.late.reset();

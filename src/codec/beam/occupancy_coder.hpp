@@ -26,7 +26,7 @@ struct RunStates {
 /// Cells whose states are said at once where they are as expected.
 inline constexpr std::size_t kGroup = 8;
 
-/// Codes states. `kInputs` contexts are mixed: 1, 2 or 5.
+/// Codes states. `kInputs` contexts are mixed: 2 or 5; 1 stands for symbols in place of bits.
 template <std::size_t kInputs>
 class OccupancyCoder {
  public:

@@ -29,7 +29,8 @@ struct Run {
   bool sequential = false;
 };
 
-/// Codes runs. So many contexts are mixed for residuals and for states.
+/// Codes runs. So many contexts are mixed for residuals and for states; 1 stands for symbols in
+/// place of bits.
 template <std::size_t kResidualInputs, std::size_t kStateInputs>
 class StepCoder {
  public:
@@ -238,7 +239,7 @@ class StepCoder {
     }
     const bool is_side = apart(range, between) > std::min(apart(range, a), apart(range, b));
     const Side side = code_side(coder, contexts, rising,
-                                !is_side                           ? Side::none
+                                !is_side                            ? Side::none
                                 : apart(range, b) < apart(range, a) ? Side::b
                                                                     : Side::a);
     if (side == Side::none) return;
