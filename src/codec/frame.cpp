@@ -164,16 +164,16 @@ Result<std::span<const std::byte>> checked_part(std::span<const std::byte> frame
                                                 const FrameHeader& header, std::uint8_t kind) {
   const auto part = std::find_if(header.parts.begin(), header.parts.end(),
                                  [kind](const FramePart& p) { return p.kind == kind; });
-  const std::string what(part_name(header.codec, kind));
+  const auto what = [&] { return "\"" + std::string(part_name(header.codec, kind)) + "\""; };
   if (part == header.parts.end()) {
-    return fail(ErrorCode::corrupt, "the frame has no part \"" + what + "\"");
+    return fail(ErrorCode::corrupt, "the frame has no part " + what());
   }
   if (part->offset + part->size > frame.size()) {
-    return fail(ErrorCode::truncated, "the frame ends within part \"" + what + "\"");
+    return fail(ErrorCode::truncated, "the frame ends within part " + what());
   }
   const auto bytes = frame.subspan(part->offset, part->size);
   if (crc32(bytes) != part->crc32) {
-    return fail(ErrorCode::corrupt, "part \"" + what + "\" is damaged: its checksum is wrong");
+    return fail(ErrorCode::corrupt, "part " + what() + " is damaged: its checksum is wrong");
   }
   return bytes;
 }

@@ -60,7 +60,7 @@ std::size_t octree_bytes(const PointCloud& cloud, const std::vector<std::uint32_
   }
   if (lattice.empty()) return 0;
   std::vector<std::byte> bytes;
-  beam::write_octree(lattice, bytes);
+  beam::OctreeCoder().write(lattice, bytes);
   constexpr std::size_t kHead = 5;  // how many, and the step
   return bytes.size() + kHead;
 }
@@ -95,7 +95,9 @@ class Scene {
     range_.resize(image_.cells());
     azimuth_.resize(residuals ? image_.cells() : 0);
     height_.resize(residuals ? image_.cells() : 0);
-    beam::for_each_aligned(model_, image_, [&](int /*row*/, std::size_t from, std::size_t to) {
+    std::vector<std::int32_t> first;
+    beam::find_first_columns(model_, image_, first);
+    beam::for_each_aligned(first, image_, [&](std::size_t from, std::size_t to) {
       range_[to] = image_.range[from];
       if (!residuals) return;
       azimuth_[to] = image_.azimuth_residual[from];
@@ -125,7 +127,7 @@ class Scene {
     Pieces pieces;
     pieces.layers = layer_bytes(plan);
     bytes_.clear();
-    beam::write_firings(image_.firing_tick, bytes_, image_.held);
+    beam::FiringCoder().write(image_.firing_tick, bytes_, image_.held);
     pieces.firings = bytes_.size();
     std::vector<std::uint32_t> extras;
     for (const ExtraPoint& extra : image_.extras) {

@@ -22,6 +22,9 @@ struct BeamGeometry {
 
 [[nodiscard]] std::vector<BeamGeometry> beam_geometry(const SensorModel& model);
 
+/// Whether some firings may be held.
+[[nodiscard]] bool has_interpolated_lags(const SensorModel& model);
+
 /// By beam, the ticks of its lag that held firings lack; empty where no firing is ever held.
 [[nodiscard]] std::vector<std::int32_t> interpolated_lags(const SensorModel& model);
 

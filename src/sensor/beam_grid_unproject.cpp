@@ -27,7 +27,6 @@ void BeamUnprojector::unproject(const BeamImage& image, PointCloud& cloud) {
   }
   const auto cells = std::count_if(image.range.begin(), image.range.end(),
                                    [](std::int32_t range) { return range != 0; });
-  cloud.clear();
   cloud.resize_xyz(static_cast<std::size_t>(cells));
   for (auto* column : {&x_, &y_, &z_}) column->resize(cols);
   std::size_t count = 0;

@@ -85,11 +85,15 @@ Status check(const Motion& motion, const SensorModel& model) {
       "moves so in a sweep");
 }
 
+bool has_interpolated_lags(const SensorModel& model) {
+  return std::any_of(model.beams.begin(), model.beams.end(),
+                     [](const Beam& beam) { return beam.interpolated != 0; });
+}
+
 std::vector<std::int32_t> interpolated_lags(const SensorModel& model) {
   std::vector<std::int32_t> ticks;
+  if (!has_interpolated_lags(model)) return ticks;
   for (const Beam& beam : model.beams) ticks.push_back(beam.interpolated);
-  const bool any = std::any_of(ticks.begin(), ticks.end(), [](std::int32_t t) { return t != 0; });
-  if (!any) ticks.clear();
   return ticks;
 }
 

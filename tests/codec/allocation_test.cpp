@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <new>
 
+#include "codec/beam/sensor.hpp"
 #include "codec/scene.hpp"
 
 #if defined(__has_feature)
@@ -95,6 +96,27 @@ TEST(Allocation, EncodeAndDecodeAllocateNothingInTheSteadyState) {
         allocations_of(rounds, [&] { good = good && decoder.decode(frame, cloud).has_value(); }),
         0U);
     EXPECT_TRUE(good);
+  }
+}
+
+TEST(Allocation, BeamAllocatesNothingInTheSteadyStateEither) {
+  const PointCloud sweep = test::spinning_sweep(32, 900, 1);
+  for (const Effort effort : {Effort::fast, Effort::normal, Effort::best}) {
+    EncoderOptions options;
+    options.beam.effort = effort;
+    options.beam.max_error_m = 0.05;
+    options.beam.fields = Fields::xyz;
+    Encoder encoder = test::encoder_of(options);
+    Decoder decoder;
+    PointCloud cloud;
+    test::Bytes frame = test::encode(encoder, sweep);
+    bool good = decoder.decode(frame, cloud).has_value();
+    EXPECT_EQ(allocations_of(3, [&] { good = good && encoder.encode(sweep, {}).has_value(); }), 0U);
+    frame = test::encode(encoder, sweep);
+    EXPECT_EQ(allocations_of(3, [&] { good = good && decoder.decode(frame, cloud).has_value(); }),
+              0U);
+    EXPECT_TRUE(good);
+    EXPECT_GT(cloud.size(), 20'000U);
   }
 }
 

@@ -276,11 +276,15 @@ AttributeCoder& AttributeCoder::operator=(AttributeCoder&&) noexcept = default;
 AttributeCoder::~AttributeCoder() = default;
 
 void AttributeCoder::begin(const AttributeFormat& format, const LayerPlan* plan,
-                           std::vector<std::int32_t> first_col) {
+                           std::span<const std::int32_t> first_col) {
   State& s = *state_;
   s.format = format;
-  s.plan = plan != nullptr ? *plan : LayerPlan{};
-  s.first_col = std::move(first_col);
+  if (plan != nullptr) {
+    s.plan = *plan;
+  } else {
+    s.plan = {};
+  }
+  s.first_col.assign(first_col.begin(), first_col.end());
   s.numbers.reset();
   s.late.reset();
   s.last_bits = 0;

@@ -19,7 +19,7 @@ class AttributeCoder {
   /// Begins a sweep. `plan` is that of its layers, or null where it has no image;
   /// `first_col[row]` is where the row's firing 0 stands in the coded image.
   void begin(const AttributeFormat& format, const LayerPlan* plan,
-             std::vector<std::int32_t> first_col);
+             std::span<const std::int32_t> first_col);
 
   /// Appends the attributes of layer `layer`, which `layers` has just coded. `cells` has an entry
   /// for each cell of the coded image, row-major; coding leaves them as they are.

@@ -51,15 +51,13 @@ void AttributeEncoder::read(const CloudView& cloud, const BeamOptions& options) 
                  [&](float intensity) { return intensity_value(format_.unit, intensity); });
 }
 
-void AttributeEncoder::begin(const SensorModel* model, const BeamImage& image,
-                             const LayerPlan* plan, std::span<const std::int32_t> range,
-                             PartList& parts) {
+void AttributeEncoder::begin(const BeamImage& image, const LayerPlan* plan,
+                             std::span<const std::int32_t> first_col,
+                             std::span<const std::int32_t> range, PartList& parts) {
   if (!any()) return;
-  std::vector<std::int32_t> first_col;
   if (plan != nullptr) {
-    first_col = first_columns(*model, image);
     cells_.resize(image.cells(), format_.has_intensity, format_.has_ring, format_.has_time);
-    for_each_aligned(*model, image, [&](int /*row*/, std::size_t cell, std::size_t aligned) {
+    for_each_aligned(first_col, image, [&](std::size_t cell, std::size_t aligned) {
       if (image.range[cell] == 0) return;
       const std::size_t point = image.point[cell];
       if (format_.has_intensity) cells_.intensity[aligned] = points_.intensity[point];
@@ -70,7 +68,7 @@ void AttributeEncoder::begin(const SensorModel* model, const BeamImage& image,
   }
   parts.begin(static_cast<std::uint8_t>(Part::attributes));
   write_format(format_, parts.bytes());
-  coder_.begin(format_, plan, std::move(first_col));
+  coder_.begin(format_, plan, first_col);
 }
 
 void AttributeEncoder::write_extras(std::span<const std::uint32_t> points, PartList& parts) {
@@ -92,7 +90,7 @@ void AttributeEncoder::write_layer(int layer, const LayerCoder& layers, PartList
 }
 
 Status AttributeDecoder::begin(std::span<const std::byte> frame, const FrameHeader& header,
-                               const LayerPlan* plan, std::vector<std::int32_t> first_col,
+                               const LayerPlan* plan, std::span<const std::int32_t> first_col,
                                std::size_t extras) {
   any_ = has_part(header, static_cast<std::uint8_t>(Part::attributes));
   format_ = {};
@@ -104,7 +102,7 @@ Status AttributeDecoder::begin(std::span<const std::byte> frame, const FrameHead
   if (!read_format(*bytes, rows, cols, format_)) {
     return fail(ErrorCode::corrupt, "the units of the frame's attributes cannot be right");
   }
-  first_col_ = std::move(first_col);
+  first_col_.assign(first_col.begin(), first_col.end());
   const std::size_t cells = static_cast<std::size_t>(rows) * static_cast<std::size_t>(cols);
   cells_.resize(cells, format_.has_intensity, format_.has_ring, format_.has_time);
   extras_.resize(extras, format_.has_intensity, format_.has_ring, format_.has_time);

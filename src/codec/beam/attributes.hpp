@@ -22,9 +22,9 @@ class AttributeEncoder {
   /// Takes the columns that the options ask for and the cloud has.
   void read(const CloudView& cloud, const BeamOptions& options);
 
-  /// Writes what comes before the first point. `model` and `plan` are null where the sweep has no
-  /// image; else `range` is the coded image's plane.
-  void begin(const SensorModel* model, const BeamImage& image, const LayerPlan* plan,
+  /// Writes what comes before the first point. `plan` is null where the sweep has no image; else
+  /// `range` is the coded image's plane, `first_col` as `find_first_columns` gives it.
+  void begin(const BeamImage& image, const LayerPlan* plan, std::span<const std::int32_t> first_col,
              std::span<const std::int32_t> range, PartList& parts);
   /// `points`: indices into the cloud, in the order in which the extras are decoded.
   void write_extras(std::span<const std::uint32_t> points, PartList& parts);
@@ -47,7 +47,7 @@ class AttributeDecoder {
   /// Reads what comes before the first point, and the attributes of `extras` points without a
   /// cell. Errors: truncated, corrupt.
   [[nodiscard]] Status begin(std::span<const std::byte> frame, const FrameHeader& header,
-                             const LayerPlan* plan, std::vector<std::int32_t> first_col,
+                             const LayerPlan* plan, std::span<const std::int32_t> first_col,
                              std::size_t extras);
   /// Whether the attributes of a layer are there, or not meant to be.
   /// Errors: truncated, corrupt.

@@ -12,6 +12,7 @@
 
 #include "codec/beam/attributes.hpp"
 #include "codec/beam/exact_coder.hpp"
+#include "codec/beam/model_bytes.hpp"
 #include "codec/beam/octree.hpp"
 #include "codec/beam/point_order.hpp"
 #include "codec/beam/range_layers.hpp"
@@ -77,8 +78,11 @@ class Encoder {
   int frames_since_model_ = 0;
   PointCloud placed_;
   LayerPlan plan_;
+  std::vector<std::int32_t> first_column_;              ///< as `find_first_columns` gives it
   std::vector<std::int32_t> range_, azimuth_, height_;  ///< the image, columns aligned by azimuth
+  FiringCoder firing_coder_;
   LayerCoder layers_;
+  OctreeCoder octree_;
   std::vector<LatticePoint> lattice_;        ///< points without a cell
   std::vector<std::uint32_t> extra_points_;  ///< of `lattice_`, indices into the cloud
   AttributeEncoder attributes_;
@@ -112,16 +116,20 @@ class Decoder {
   bool known_model_ = false;  ///< whether the frame at hand refers to `model_`
   BeamImage image_;
   LayerPlan plan_;
-  std::vector<std::int32_t> range_;  ///< columns aligned by azimuth
+  std::vector<std::int32_t> first_column_;  ///< as `find_first_columns` gives it
+  std::vector<std::int32_t> range_;         ///< columns aligned by azimuth
   std::vector<CellState> state_;
   std::vector<std::int32_t> azimuth_, height_;  ///< residuals, columns aligned by azimuth
+  FiringCoder firing_coder_;
   LayerCoder layers_;
+  OctreeCoder octree_;
   double extras_step_m_ = 0;
   std::vector<LatticePoint> lattice_;  ///< the extras
   PointCloud placed_;                  ///< points of the image, row by row, then the extras
   AttributeDecoder attributes_;
-  PointOrder order_;                  ///< empty where points come firing by firing
-  std::vector<std::uint32_t> slots_;  ///< places of `placed_` in the cloud
+  PointOrder order_;                      ///< empty where points come firing by firing
+  std::vector<std::uint32_t> next_slot_;  ///< of each firing
+  std::vector<std::uint32_t> slots_;      ///< places of `placed_` in the cloud
 };
 
 }  // namespace sweepcast::beam

@@ -45,14 +45,12 @@ std::string_view part_name(std::uint8_t kind) noexcept {
 // The same way back.
 Status Decoder::decode(std::span<const std::byte> frame, const FrameHeader& header, int layers,
                        bool fill, PointCloud& cloud) {
-  cloud.clear();
   if (Status status = read_model_part(frame, header); !status) return status;
   const auto grid = checked_part(frame, header, static_cast<std::uint8_t>(Part::grid));
   if (!grid) return tl::unexpected(grid.error());
   if (!read_grid(*grid, most_cells(header.counts.points_in)))
     return fail(ErrorCode::corrupt, "the frame's grid cannot be right");
   if (Status status = read_extras(frame, header); !status) return status;
-  placed_.clear();
   complete_ = true;
   if (image_.cols > 0) {
     if (Status status = read_layers(frame, header, layers); !status) return status;
@@ -60,6 +58,8 @@ Status Decoder::decode(std::span<const std::byte> frame, const FrameHeader& head
   } else if (Status status = attributes_.begin(frame, header, nullptr, {}, lattice_.size());
              !status) {
     return status;
+  } else {
+    placed_.clear();
   }
   append_places(lattice_, extras_step_m_, placed_);
   if (placed_.size() > header.counts.points_coded) {
@@ -74,7 +74,7 @@ Status Decoder::decode(std::span<const std::byte> frame, const FrameHeader& head
 
 // Appends the points that were left out, as interpolation has them.
 void Decoder::append_filled(PointCloud& cloud) {
-  for_each_aligned(model_, image_, [&](int /*row*/, std::size_t cell, std::size_t aligned) {
+  for_each_aligned(first_column_, image_, [&](std::size_t cell, std::size_t aligned) {
     image_.range[cell] = state_[aligned] == CellState::filled ? range_[aligned] : 0;
   });
   unprojector_->unproject(image_, placed_);
@@ -116,7 +116,7 @@ Status Decoder::read_slots(std::span<const std::byte> frame, const FrameHeader& 
       return {};
     }
   }
-  firing_order(image_, slots_);
+  firing_order(image_, next_slot_, slots_);
   for (std::size_t i = 0; i < lattice_.size(); ++i) {
     slots_.push_back(static_cast<std::uint32_t>(slots_.size()));
   }
@@ -125,6 +125,11 @@ Status Decoder::read_slots(std::span<const std::byte> frame, const FrameHeader& 
 
 // Puts all points where they belong, with their attributes.
 void Decoder::assemble(PointCloud& cloud) {
+  // Coordinates are all overwritten, so those of the last sweep stay: no time is lost on zeros.
+  cloud.intensity.clear();
+  cloud.ring.clear();
+  cloud.time_ns.clear();
+  cloud.filled.clear();
   cloud.width = order_.width;
   cloud.resize_xyz(std::max(slots_.size(), order_.items.size()));
   if (cloud.size() > slots_.size()) {
@@ -197,14 +202,14 @@ Status Decoder::read_layers(std::span<const std::byte> frame, const FrameHeader&
   const auto firings = checked_part(frame, header, static_cast<std::uint8_t>(Part::firings));
   if (!firings) return tl::unexpected(firings.error());
   image_.firing_tick.resize(static_cast<std::size_t>(image_.cols));
-  image_.held.resize(interpolated_lags(model_).empty() ? 0 : image_.firing_tick.size());
-  if (!read_firings(*firings, model_.ticks_per_turn, image_.firing_tick, image_.held)) {
+  image_.held.resize(has_interpolated_lags(model_) ? image_.firing_tick.size() : 0);
+  if (!firing_coder_.read(*firings, model_.ticks_per_turn, image_.firing_tick, image_.held)) {
     return fail(ErrorCode::corrupt, "the frame's firings cannot be right");
   }
+  find_first_columns(model_, image_, first_column_);
   const bool residuals = image_.azimuth_divisor != 0;
   for (auto* plane : {&azimuth_, &height_}) plane->assign(residuals ? image_.cells() : 0, 0);
-  if (Status status =
-          attributes_.begin(frame, header, &plan_, first_columns(model_, image_), lattice_.size());
+  if (Status status = attributes_.begin(frame, header, &plan_, first_column_, lattice_.size());
       !status) {
     return status;
   }
@@ -238,7 +243,7 @@ Status Decoder::read_layers(std::span<const std::byte> frame, const FrameHeader&
   image_.range.resize(image_.cells());
   image_.azimuth_residual.resize(azimuth_.size());
   image_.height_residual.resize(height_.size());
-  for_each_aligned(model_, image_, [&](int /*row*/, std::size_t cell, std::size_t aligned) {
+  for_each_aligned(first_column_, image_, [&](std::size_t cell, std::size_t aligned) {
     image_.range[cell] = state_[aligned] == CellState::measured ? range_[aligned] : 0;
     if (!residuals) return;
     image_.azimuth_residual[cell] = azimuth_[aligned];
@@ -258,7 +263,7 @@ Status Decoder::read_extras(std::span<const std::byte> frame, const FrameHeader&
   extras_step_m_ = static_cast<double>(in.get_varint(kLargestStep)) / kRangeUnits;
   if (in.ok()) {
     lattice_.resize(count);
-    if (read_octree(in.get_bytes(in.remaining()), lattice_)) return {};
+    if (octree_.read(in.get_bytes(in.remaining()), lattice_)) return {};
   }
   return fail(ErrorCode::corrupt, "the frame's extra points cannot be right");
 }

@@ -120,7 +120,7 @@ void Encoder::write_sweep(const CloudView& cloud, PartList& parts, SweepCounts& 
   if (model != nullptr) plan_layers();
   write_grid(parts);
   write_extras(parts, counts);
-  attributes_.begin(model, image, model != nullptr ? &plan_ : nullptr, range_, parts);
+  attributes_.begin(image, model != nullptr ? &plan_ : nullptr, first_column_, range_, parts);
   attributes_.write_extras(extra_points_, parts);
   if (model != nullptr) write_layers(parts, counts);
   if (!options_.lossless && !options_.keep_order) return;
@@ -159,22 +159,20 @@ std::vector<std::int32_t> Encoder::take_decoded() {
   std::vector<std::int32_t> decoded, truth;
   std::vector<CellState> state;
   layers_.read(decoded, state);
-  for_each_aligned(*imager_.model(), image,
-                   [&](int /*row*/, std::size_t cell, std::size_t aligned) {
-                     const bool measured = state[aligned] == CellState::measured;
-                     if (measured) truth.push_back(image.range[cell]);
-                     image.range[cell] = measured ? decoded[aligned] : 0;
-                   });
+  for_each_aligned(first_column_, image, [&](std::size_t cell, std::size_t aligned) {
+    const bool measured = state[aligned] == CellState::measured;
+    if (measured) truth.push_back(image.range[cell]);
+    image.range[cell] = measured ? decoded[aligned] : 0;
+  });
   return truth;
 }
 
 // Undoes it.
 void Encoder::give_back() {
   BeamImage& image = imager_.image();
-  for_each_aligned(*imager_.model(), image,
-                   [&](int /*row*/, std::size_t cell, std::size_t aligned) {
-                     image.range[cell] = range_[aligned];
-                   });
+  for_each_aligned(first_column_, image, [&](std::size_t cell, std::size_t aligned) {
+    image.range[cell] = range_[aligned];
+  });
 }
 
 // What the decoder lacks to the true coordinates. `ranges`: as `take_decoded` gives them.
@@ -205,6 +203,7 @@ void Encoder::plan_layers() {
   const BeamImage& image = imager_.image();
   set_plan(*imager_.model(), image.cols, kBaseRows, kBaseCols, plan_);
   plan_.effort = options_.effort;
+  find_first_columns(*imager_.model(), image, first_column_);
   plan_.quality.resize(static_cast<std::size_t>(LayerCoder::layers(plan_)));
   for (std::size_t i = 0; i < plan_.quality.size(); ++i) {
     const auto tolerance = static_cast<std::int32_t>(quality_.tolerance_m[i] * kRangeUnits);
@@ -214,13 +213,12 @@ void Encoder::plan_layers() {
   range_.resize(image.cells());
   azimuth_.resize(residuals ? image.cells() : 0);
   height_.resize(residuals ? image.cells() : 0);
-  for_each_aligned(*imager_.model(), image,
-                   [&](int /*row*/, std::size_t cell, std::size_t aligned) {
-                     range_[aligned] = image.range[cell];
-                     if (!residuals) return;
-                     azimuth_[aligned] = image.azimuth_residual[cell];
-                     height_[aligned] = image.height_residual[cell];
-                   });
+  for_each_aligned(first_column_, image, [&](std::size_t cell, std::size_t aligned) {
+    range_[aligned] = image.range[cell];
+    if (!residuals) return;
+    azimuth_[aligned] = image.azimuth_residual[cell];
+    height_[aligned] = image.height_residual[cell];
+  });
 }
 
 void Encoder::write_model_part(PartList& parts) {
@@ -254,7 +252,7 @@ void Encoder::write_grid(PartList& parts) {
   }
   if (image.cols == 0) return;
   parts.begin(static_cast<std::uint8_t>(Part::firings));
-  write_firings(image.firing_tick, parts.bytes(), image.held);
+  firing_coder_.write(image.firing_tick, parts.bytes(), image.held);
 }
 
 // Puts the points without a cell on a lattice, and counts those that cannot be coded.
@@ -292,8 +290,8 @@ void Encoder::write_extras(PartList& parts, SweepCounts& counts) {
   ByteWriter out = parts.begin(static_cast<std::uint8_t>(Part::extras));
   out.put_varint(lattice_.size());
   out.put_varint(as_unsigned(extras_step(error_m())));
-  sort_for_octree(lattice_, extra_points_);
-  write_octree(lattice_, parts.bytes());
+  octree_.sort(lattice_, extra_points_);
+  octree_.write(lattice_, parts.bytes());
 }
 
 }  // namespace sweepcast::beam

@@ -1,8 +1,8 @@
 #include "codec/beam/model_bytes.hpp"
 
+#include <algorithm>
 #include <array>
 
-#include "codec/entropy/mixer.hpp"
 #include "codec/entropy/range_coder.hpp"
 
 namespace sweepcast::beam {
@@ -11,58 +11,6 @@ namespace {
 constexpr std::array kNumbers = {&Beam::tan_elevation,  &Beam::height, &Beam::azimuth_offset,
                                  &Beam::lateral_offset, &Beam::lag,    &Beam::time_offset,
                                  &Beam::interpolated};
-
-// Steps between firings, less one: in unary while small, then by plain bits.
-class StepCoder {
- public:
-  template <class Coder>
-  std::uint32_t code(Coder& coder, std::uint32_t step) {
-    std::uint32_t value = 0;
-    while (value < kUnary) {
-      const BitMixer<3>::Contexts contexts{hash_context(last_[0] * 32U + last_[1], value),
-                                           hash_context(history_, 100U + value),
-                                           hash_context(last_[5] * 32U + last_[0], 200U + value)};
-      if (!mixer_.code(coder, contexts, 0, step > value)) break;
-      ++value;
-    }
-    if (value == kUnary) {
-      std::uint32_t rest = 0;
-      for (int bit = 20; bit-- > 0;) {
-        const bool set = (((step - kUnary) >> bit) & 1U) != 0;
-        rest = rest * 2 + (coder.code(set, 32768) ? 1U : 0U);
-      }
-      value += rest;
-    }
-    std::copy_backward(last_.begin(), last_.end() - 1, last_.end());
-    last_[0] = std::min(value, 31U);
-    history_ = history_ * 4U + std::min(value, 3U);
-    return value;
-  }
-
- private:
-  static constexpr std::uint32_t kUnary = 24;
-  BitMixer<3> mixer_{12, 1};
-  std::array<std::uint32_t, 6> last_{};
-  std::uint32_t history_ = 0;  // of the last 16 steps
-};
-
-// Whether firings are held: packets have equally many, so that what comes next follows from the
-// last dozen.
-class HoldCoder {
- public:
-  template <class Coder>
-  bool code(Coder& coder, bool held) {
-    const BitMixer<3>::Contexts contexts{hash_context(history_ & 7U, 1U),
-                                         hash_context(history_ & 0xFFFU, 2U), 0U};
-    const bool result = mixer_.code(coder, contexts, 0, held);
-    history_ = history_ * 2U + (result ? 1U : 0U);
-    return result;
-  }
-
- private:
-  BitMixer<3> mixer_{12, 1};
-  std::uint32_t history_ = 0;
-};
 
 void write_mount(const Mount& mount, ByteWriter& out) {
   for (const std::int32_t v : mount.translation) out.put_signed(v);
@@ -135,31 +83,72 @@ Motion read_motion(ByteReader& in) {
   return motion;
 }
 
-void write_firings(std::span<const std::int32_t> ticks, std::vector<std::byte>& out,
-                   std::span<const std::uint8_t> held) {
+// In unary while small, then by plain bits.
+template <class Coder>
+std::uint32_t FiringCoder::code(Coder& coder, std::uint32_t step) {
+  std::uint32_t value = 0;
+  while (value < kUnary) {
+    const BitMixer<3>::Contexts contexts{hash_context(last_[0] * 32U + last_[1], value),
+                                         hash_context(history_, 100U + value),
+                                         hash_context(last_[5] * 32U + last_[0], 200U + value)};
+    if (!mixer_.code(coder, contexts, 0, step > value)) break;
+    ++value;
+  }
+  if (value == kUnary) {
+    std::uint32_t rest = 0;
+    for (int bit = 20; bit-- > 0;) {
+      const bool set = (((step - kUnary) >> bit) & 1U) != 0;
+      rest = rest * 2 + (coder.code(set, 32768) ? 1U : 0U);
+    }
+    value += rest;
+  }
+  std::copy_backward(last_.begin(), last_.end() - 1, last_.end());
+  last_[0] = std::min(value, 31U);
+  history_ = history_ * 4U + std::min(value, 3U);
+  return value;
+}
+
+// Packets have equally many firings, so that what comes next follows from the last dozen.
+template <class Coder>
+bool FiringCoder::code_hold(Coder& coder, bool held) {
+  const BitMixer<3>::Contexts contexts{hash_context(holds_ & 7U, 1U),
+                                       hash_context(holds_ & 0xFFFU, 2U), 0U};
+  const bool result = hold_mixer_.code(coder, contexts, 0, held);
+  holds_ = holds_ * 2U + (result ? 1U : 0U);
+  return result;
+}
+
+void FiringCoder::reset() {
+  mixer_.reset();
+  last_.fill(0);
+  history_ = 0;
+  hold_mixer_.reset();
+  holds_ = 0;
+}
+
+void FiringCoder::write(std::span<const std::int32_t> ticks, std::vector<std::byte>& out,
+                        std::span<const std::uint8_t> held) {
+  reset();
   RangeEncoder coder(out);
-  StepCoder steps;
-  HoldCoder holds;
   std::int32_t last = -1;
   for (std::size_t j = 0; j < ticks.size(); ++j) {
-    steps.code(coder, static_cast<std::uint32_t>(ticks[j] - last - 1));
-    if (!held.empty()) holds.code(coder, held[j] != 0);
+    code(coder, static_cast<std::uint32_t>(ticks[j] - last - 1));
+    if (!held.empty()) code_hold(coder, held[j] != 0);
     last = ticks[j];
   }
   coder.finish();
 }
 
-bool read_firings(std::span<const std::byte> bytes, std::int32_t ticks_per_turn,
-                  std::span<std::int32_t> ticks, std::span<std::uint8_t> held) {
+bool FiringCoder::read(std::span<const std::byte> bytes, std::int32_t ticks_per_turn,
+                       std::span<std::int32_t> ticks, std::span<std::uint8_t> held) {
+  reset();
   RangeDecoder coder(bytes);
-  StepCoder steps;
-  HoldCoder holds;
   std::int64_t last = -1;
   for (std::size_t j = 0; j < ticks.size(); ++j) {
-    last += std::int64_t{steps.code(coder, 0)} + 1;
+    last += std::int64_t{code(coder, 0)} + 1;
     if (last >= ticks_per_turn || coder.overran()) return false;
     ticks[j] = static_cast<std::int32_t>(last);
-    if (!held.empty()) held[j] = holds.code(coder, false) ? 1 : 0;
+    if (!held.empty()) held[j] = code_hold(coder, false) ? 1 : 0;
   }
   return !coder.overran();
 }

@@ -9,6 +9,7 @@
 
 #include "codec/beam/plane.hpp"
 #include "codec/entropy/mixer.hpp"
+#include "codec/entropy/symbol_coder.hpp"
 
 namespace sweepcast::beam {
 
@@ -25,13 +26,14 @@ struct RunStates {
 /// Cells whose states are said at once where they are as expected.
 inline constexpr std::size_t kGroup = 8;
 
-/// Codes states. `kInputs` contexts are mixed: 1, 2 or 5.
+/// Codes states. `kInputs` contexts are mixed: 2 or 5; 1 stands for symbols in place of bits.
 template <std::size_t kInputs>
 class OccupancyCoder {
  public:
   void reset() {
     group_.reset();
     cell_.reset();
+    halves_.reset(kEven);
     history_ = 0;
   }
 
@@ -70,6 +72,12 @@ class OccupancyCoder {
       as_expected &= run.cell[i] == truth_[i];
     }
     if (group_as_expected(coder, run.step, doubtful, as_expected)) return;
+    if constexpr (kInputs == 1) {
+      for (std::size_t half = first; half < last; half += kHalf) {
+        code_half(coder, run, half, std::min(last, half + kHalf));
+      }
+      return;
+    }
     for (std::size_t i = first; i < last; ++i) run.cell[i] = CellState::unknown;
     for (std::size_t i = first; i < last; ++i) {
       const bool occupied = code_cell(coder, run, i, truth_[i] == CellState::measured);
@@ -125,6 +133,25 @@ class OccupancyCoder {
     return same;
   }
 
+  // Which of four cells are not as guessed, as one symbol.
+  template <class Coder>
+  void code_half(Coder& coder, const RunStates& run, std::size_t first, std::size_t last) {
+    std::uint32_t guessed = 0;
+    std::uint32_t doubted = 0;
+    std::uint32_t wrong = 0;
+    for (std::size_t i = first; i < last; ++i) {
+      const auto at = static_cast<std::uint32_t>(i - first);
+      guessed |= (run.cell[i] == CellState::measured ? 1U : 0U) << at;
+      doubted |= (doubt_[i] > 0 ? 1U : 0U) << at;
+      wrong |= (run.cell[i] != truth_[i] ? 1U : 0U) << at;
+    }
+    wrong = halves_.code(coder, guessed * 16U + doubted, wrong);
+    for (std::size_t i = first; i < last; ++i) {
+      const bool occupied = (((guessed ^ wrong) >> (i - first)) & 1U) != 0;
+      run.cell[i] = occupied ? CellState::measured : CellState::empty;
+    }
+  }
+
   template <class Coder>
   bool code_cell(Coder& coder, const RunStates& run, std::size_t i, bool occupied) {
     const std::uint32_t n = known(run.n[i]);
@@ -149,6 +176,17 @@ class OccupancyCoder {
     return cell_.code(coder, contexts, sides * 9U + n * 3U + sa, occupied);
   }
 
+  static constexpr std::size_t kHalf = 4;
+  // Nothing is known of the shares.
+  static constexpr SymbolShares kEven = [] {
+    SymbolShares shares{};
+    for (std::size_t k = 0; k < kSymbols; ++k) {
+      shares.from[k] = static_cast<std::int16_t>(k << (kShareBits - 4));
+    }
+    return shares;
+  }();
+
+  SymbolCoder halves_{256};
   BitMixer<kGroupInputs> group_{kTableBits, 8};
   BitMixer<kInputs> cell_{kTableBits, 81};
   std::uint32_t history_ = 0;

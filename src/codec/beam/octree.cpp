@@ -4,7 +4,6 @@
 #include <bit>
 #include <utility>
 
-#include "codec/entropy/mixer.hpp"
 #include "codec/entropy/range_coder.hpp"
 
 namespace sweepcast::beam {
@@ -45,7 +44,7 @@ LatticePoint point_of(std::uint64_t code) {
 template <class Coder>
 class TreeCoder {
  public:
-  explicit TreeCoder(Coder& coder) : coder_(coder) {}
+  TreeCoder(Coder& coder, OctreeCoder::Tables& tables) : coder_(coder), tables_(tables) {}
 
   /// Codes the split of `codes`, which share all but their lowest `level` bits. Decoding: `codes`
   /// is where to put them, `prefix` the bits above.
@@ -76,10 +75,10 @@ class TreeCoder {
                                    hash_context(at, 1000U + size),
                                    hash_context(parent, 2000U + at % 3U + size * 4U)};
     bool both = false;
-    if (count > 1) both = both_.code(coder_, contexts, size, low > 0 && low < count);
+    if (count > 1) both = tables_.both.code(coder_, contexts, size, low > 0 && low < count);
     if (!both) {
       for (std::uint32_t& context : contexts) context = hash_context(context, 7U);
-      return side_.code(coder_, contexts, size, low == 0) ? 0 : count;
+      return tables_.side.code(coder_, contexts, size, low == 0) ? 0 : count;
     }
     if (count == 2) return 1;
     // Between 1 and count - 1: a binary search, its first decisions adaptive.
@@ -89,7 +88,7 @@ class TreeCoder {
       const std::uint32_t middle = from + (to - from) / 2;
       const BitMixer<3>::Contexts c{hash_context(step, 3000U + size), hash_context(step, at),
                                     hash_context(step, parent % 27U + 4000U)};
-      if (number_.code(coder_, c, std::min(step, 7U), low > middle)) {
+      if (tables_.number.code(coder_, c, std::min(step, 7U), low > middle)) {
         from = middle + 1;
       } else {
         to = middle;
@@ -99,40 +98,40 @@ class TreeCoder {
   }
 
   Coder& coder_;
-  BitMixer<3> both_{14, 8};
-  BitMixer<3> side_{14, 8};
-  BitMixer<3> number_{12, 8};
+  OctreeCoder::Tables& tables_;
 };
 
 }  // namespace
 
-void sort_for_octree(std::vector<LatticePoint>& points, std::vector<std::uint32_t>& belongings) {
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> codes(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) codes[i] = {morton(points[i]), belongings[i]};
-  std::sort(codes.begin(), codes.end());
+void OctreeCoder::sort(std::vector<LatticePoint>& points, std::vector<std::uint32_t>& belongings) {
+  places_.resize(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) places_[i] = {morton(points[i]), belongings[i]};
+  std::sort(places_.begin(), places_.end());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    points[i] = point_of(codes[i].first);
-    belongings[i] = codes[i].second;
+    points[i] = point_of(places_[i].first);
+    belongings[i] = places_[i].second;
   }
 }
 
-void write_octree(std::vector<LatticePoint>& points, std::vector<std::byte>& out) {
+void OctreeCoder::write(std::vector<LatticePoint>& points, std::vector<std::byte>& out) {
   if (points.empty()) return;
-  std::vector<std::uint64_t> codes(points.size());
-  std::transform(points.begin(), points.end(), codes.begin(), morton);
-  std::sort(codes.begin(), codes.end());
-  std::transform(codes.begin(), codes.end(), points.begin(), point_of);
+  codes_.resize(points.size());
+  std::transform(points.begin(), points.end(), codes_.begin(), morton);
+  std::sort(codes_.begin(), codes_.end());
+  std::transform(codes_.begin(), codes_.end(), points.begin(), point_of);
   RangeEncoder coder(out);
-  TreeCoder<RangeEncoder>(coder).code(codes, 3 * kDepth, 0, 0);
+  tables_.reset();
+  TreeCoder(coder, tables_).code(codes_, 3 * kDepth, 0, 0);
   coder.finish();
 }
 
-bool read_octree(std::span<const std::byte> bytes, std::vector<LatticePoint>& points) {
+bool OctreeCoder::read(std::span<const std::byte> bytes, std::vector<LatticePoint>& points) {
   if (points.empty()) return true;
-  std::vector<std::uint64_t> codes(points.size());
+  codes_.assign(points.size(), 0);
   RangeDecoder coder(bytes);
-  TreeCoder<RangeDecoder>(coder).code(codes, 3 * kDepth, 0, 0);
-  std::transform(codes.begin(), codes.end(), points.begin(), point_of);
+  tables_.reset();
+  TreeCoder(coder, tables_).code(codes_, 3 * kDepth, 0, 0);
+  std::transform(codes_.begin(), codes_.end(), points.begin(), point_of);
   return !coder.overran();
 }
 

@@ -161,17 +161,29 @@ std::size_t count_points(const BeamImage& image, std::size_t extras) {
 
 }  // namespace
 
-void firing_order(const BeamImage& image, std::vector<std::uint32_t>& slots) {
-  if (image.cols == 0) return;
+void firing_order(const BeamImage& image, std::vector<std::uint32_t>& next,
+                  std::vector<std::uint32_t>& slots) {
   const auto cols = static_cast<std::size_t>(image.cols);
-  std::vector<std::uint32_t> next(cols + 1, 0);  // place of a firing's next point
-  for (std::size_t cell = 0; cell < image.cells(); ++cell) {
-    if (image.range[cell] != 0) ++next[cell % cols + 1];
+  const std::size_t cells = cols > 0 ? image.cells() : 0;
+  next.assign(cols + 1, 0);
+  for (std::size_t row = 0; row < cells; row += cols) {
+    for (std::size_t col = 0; col < cols; ++col) {
+      next[col + 1] += image.range[row + col] != 0 ? 1U : 0U;
+    }
   }
   for (std::size_t col = 0; col < cols; ++col) next[col + 1] += next[col];
-  for (std::size_t cell = 0; cell < image.cells(); ++cell) {
-    if (image.range[cell] != 0) slots.push_back(next[cell % cols]++);
+  const std::size_t before = slots.size();
+  std::size_t count = before;
+  slots.resize(before + next[cols] + 1);  // room for one that is taken back
+  for (std::size_t row = 0; row < cells; row += cols) {
+    for (std::size_t col = 0; col < cols; ++col) {
+      const bool has_point = image.range[row + col] != 0;
+      slots[count] = next[col];
+      next[col] += has_point ? 1U : 0U;
+      count += has_point ? 1U : 0U;
+    }
   }
+  slots.resize(count);
 }
 
 PointOrder original_order(std::size_t points, std::uint32_t width, const BeamImage& image,

@@ -12,7 +12,8 @@ namespace sweepcast::beam {
 
 /// Appends to `slots`, for each point of the image row by row, its place when points are ordered by
 /// firing, those of a firing by row.
-void firing_order(const BeamImage& image, std::vector<std::uint32_t>& slots);
+void firing_order(const BeamImage& image, std::vector<std::uint32_t>& next,
+                  std::vector<std::uint32_t>& slots);
 
 /// The original order of a cloud. An item is a point's cell in the image (row * cols + col), or the
 /// number of cells plus its place among the extras, or `kDropped`: a slot whose point is not coded.

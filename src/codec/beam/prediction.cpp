@@ -58,6 +58,26 @@ constexpr auto kFarLevel = [] {
 // Loops over levels are spelt out: compilers vectorise no loop around a loop.
 using Levels = std::make_index_sequence<PredictionScale::kLevels>;
 
+// Where cells' numbers stand.
+template <class Number>
+struct PredictionRows {
+  explicit PredictionRows(auto& of)
+      : range(of.range.data()),
+        carried(of.carried.data()),
+        spread(of.spread.data()),
+        basis(of.basis.data()) {}
+  Number *range, *carried, *spread, *basis;
+};
+
+struct ContextRows {
+  explicit ContextRows(Contexts& contexts)
+      : mean(contexts.mean.data()), turned(contexts.turned.data()) {
+    for (std::size_t k = 0; k < of.size(); ++k) of[k] = contexts.of[k].data();
+  }
+  std::array<std::int32_t*, Contexts::kCount> of{};
+  std::int32_t *mean, *turned;
+};
+
 template <std::size_t... K>
 [[gnu::always_inline]] inline std::int32_t level_of(std::int32_t size, const PredictionScale& scale,
                                                     std::index_sequence<K...> /*levels*/) {
@@ -97,7 +117,8 @@ template <std::size_t... K>
                                                std::int32_t weight) {
   std::int32_t bin = middle >> 11;
   bin = bin < 0 ? 0 : bin < 1023 ? bin : 1023;
-  const std::int32_t most = bin < 9 ? (bin + 1) << 14 : 160'000;
+  const std::int32_t reach = (bin + 1) << 14;
+  const std::int32_t most = reach < 160'000 ? reach : 160'000;
   const std::int32_t size = magnitude(a - b);
   const std::int32_t apart = (size < most ? size : most) >> 3;
   const std::int32_t reciprocal = kReciprocal[static_cast<std::size_t>(bin)];
@@ -105,158 +126,145 @@ template <std::size_t... K>
   return (ratio * ((weight * (256 - weight)) >> 4)) >> 12;
 }
 
-[[gnu::always_inline]] inline void predict_cells(const Neighbours& at, const PredictionScale& scale,
-                                                 std::size_t count, Predictions& out) {
+[[gnu::always_inline]] inline void predict_cell(const Neighbours& at, const PredictionScale& levels,
+                                                std::size_t i,
+                                                const PredictionRows<std::int32_t>& out) {
   using N = Neighbours;
-  const std::int32_t* const pa = at.range[N::a];
-  const std::int32_t* const pb = at.range[N::b];
-  const std::int32_t* const pn = at.range[N::n];
-  const std::int32_t* const pna = at.range[N::na];
-  const std::int32_t* const pnb = at.range[N::nb];
-  const std::int32_t* const psa = at.range[N::sa];
-  const std::int32_t* const psb = at.range[N::sb];
-  const std::int32_t* const paa = at.range[N::aa];
-  const std::int32_t* const pbb = at.range[N::bb];
-  const std::int32_t* const pnn = at.range[N::nn];
-  const std::int32_t* const pnear = at.range[N::near];
-  std::int32_t* const ranges = out.range.data();
-  std::int32_t* const carrieds = out.carried.data();
-  std::int32_t* const spreads = out.spread.data();
-  std::int32_t* const bases = out.basis.data();
   const std::int32_t weight = at.weight;
-  const std::int32_t edge = scale.edge;
-  const PredictionScale levels = scale;
-#pragma GCC ivdep
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::int32_t a = pa[i];
-    const std::int32_t b = pb[i];
-    const std::int32_t n = pn[i];
-    const std::int32_t na = pna[i];
-    const std::int32_t nb = pnb[i];
-    const std::int32_t sa = psa[i];
-    const std::int32_t sb = psb[i];
-    const std::int32_t aa = paa[i];
-    const std::int32_t bb = pbb[i];
-    const std::int32_t nn = pnn[i];
-    const std::int32_t near = pnear[i];
-    const std::int32_t has_a = is_positive(a);
-    const std::int32_t has_b = is_positive(b);
-    const std::int32_t has_n = is_positive(n);
-    const std::int32_t has_na = is_positive(na);
-    const std::int32_t has_nb = is_positive(nb);
+  const std::int32_t edge = levels.edge;
+  const std::int32_t a = at.range[N::a][i];
+  const std::int32_t b = at.range[N::b][i];
+  const std::int32_t n = at.range[N::n][i];
+  const std::int32_t na = at.range[N::na][i];
+  const std::int32_t nb = at.range[N::nb][i];
+  const std::int32_t sa = at.range[N::sa][i];
+  const std::int32_t sb = at.range[N::sb][i];
+  const std::int32_t aa = at.range[N::aa][i];
+  const std::int32_t bb = at.range[N::bb][i];
+  const std::int32_t nn = at.range[N::nn][i];
+  const std::int32_t near = at.range[N::near][i];
+  const std::int32_t has_a = is_positive(a);
+  const std::int32_t has_b = is_positive(b);
+  const std::int32_t has_n = is_positive(n);
+  const std::int32_t has_na = is_positive(na);
+  const std::int32_t has_nb = is_positive(nb);
 
-    // The line across carried on with the change seen beside it.
-    const std::int32_t along_a = has_a & has_na;
-    const std::int32_t along_b = has_b & has_nb;
-    const std::int32_t change = (along_a != 0 ? a - na : 0) + (along_b != 0 ? b - nb : 0);
-    const std::int32_t onward = n + ((along_a & along_b) != 0 ? change >> 1 : change);
-    const std::int32_t carries = has_n & (along_a | along_b) & is_positive(onward - kNearest + 1);
-    const std::int32_t carried = carries != 0 ? onward : 0;
+  // The line across carried on with the change seen beside it.
+  const std::int32_t along_a = has_a & has_na;
+  const std::int32_t along_b = has_b & has_nb;
+  const std::int32_t change = (along_a != 0 ? a - na : 0) + (along_b != 0 ? b - nb : 0);
+  const std::int32_t onward = n + ((along_a & along_b) != 0 ? change >> 1 : change);
+  const std::int32_t carries = has_n & (along_a | along_b) & is_positive(onward - kNearest + 1);
+  const std::int32_t carried = carries != 0 ? onward : 0;
 
-    // Between both sides, blended with what is carried as far as interpolation failed across.
-    const std::int32_t line = on_line(a, b, weight);
-    const std::int32_t between = line - bow(a, b, line, weight);
-    const std::int32_t failed = n - on_line(na, nb, weight);
-    const std::int32_t failure = (has_n & has_na & has_nb) != 0 ? magnitude(failed) : levels.step;
-    const std::int32_t share = share_of(failure, levels, Levels{});
-    const std::int32_t pull = carried - between;
-    const std::int32_t blends = carries & is_positive(edge - magnitude(pull));
-    const std::int32_t blend = blends != 0 ? ((pull >> 2) * share) >> 6 : 0;
+  // Between both sides, blended with what is carried as far as interpolation failed across.
+  const std::int32_t line = on_line(a, b, weight);
+  const std::int32_t between = line - bow(a, b, line, weight);
+  const std::int32_t failed = n - on_line(na, nb, weight);
+  const std::int32_t failure = (has_n & has_na & has_nb) != 0 ? magnitude(failed) : levels.step;
+  const std::int32_t share = share_of(failure, levels, Levels{});
+  const std::int32_t pull = carried - between;
+  const std::int32_t blends = carries & is_positive(edge - magnitude(pull));
+  const std::int32_t blend = blends != 0 ? ((pull >> 2) * share) >> 6 : 0;
 
-    // One side only: carried, or the line from beyond it.
-    const std::int32_t side = a > 0 ? a : b;
-    const std::int32_t beyond = a > 0 ? aa : bb;
-    const std::int32_t fits_carried = carries & is_positive(edge - magnitude(carried - side));
-    const std::int32_t fits_beyond =
-        is_positive(beyond) & is_positive(edge - magnitude(beyond - side));
-    const std::int32_t one =
-        fits_carried != 0 ? carried : (fits_beyond != 0 ? 2 * side - beyond : side);
+  // One side only: carried, or the line from beyond it.
+  const std::int32_t side = a > 0 ? a : b;
+  const std::int32_t beyond = a > 0 ? aa : bb;
+  const std::int32_t fits_carried = carries & is_positive(edge - magnitude(carried - side));
+  const std::int32_t fits_beyond =
+      is_positive(beyond) & is_positive(edge - magnitude(beyond - side));
+  const std::int32_t one =
+      fits_carried != 0 ? carried : (fits_beyond != 0 ? 2 * side - beyond : side);
 
-    // No side: from across, or anything near.
-    std::int32_t guess = nn > 0 ? nn : kTypical;
-    guess = near > 0 ? near : guess;
-    guess = bb > 0 ? bb : guess;
-    guess = aa > 0 ? aa : guess;
-    guess = sb > 0 ? sb : guess;
-    guess = sa > 0 ? sa : guess;
-    guess = nb > 0 ? nb : guess;
-    guess = na > 0 ? na : guess;
+  // No side: from across, or anything near.
+  std::int32_t guess = nn > 0 ? nn : kTypical;
+  guess = near > 0 ? near : guess;
+  guess = bb > 0 ? bb : guess;
+  guess = aa > 0 ? aa : guess;
+  guess = sb > 0 ? sb : guess;
+  guess = sa > 0 ? sa : guess;
+  guess = nb > 0 ? nb : guess;
+  guess = na > 0 ? na : guess;
 
-    const std::int32_t apart = magnitude(a - b);
-    const std::int32_t two = has_a & has_b;
-    const std::int32_t any = has_a | has_b;
-    const std::int32_t jump = is_positive(apart - edge);
-    const std::int32_t both = between + (jump != 0 ? 0 : blend);
-    ranges[i] = two != 0 ? both : any != 0 ? one : n > 0 ? n : guess;
-    carrieds[i] = carried;
-    const std::int32_t spread_one = n > 0 ? magnitude(n - one) : edge;
-    const std::int32_t spread_across = (has_n & is_positive(nn)) != 0 ? magnitude(n - nn) : edge;
-    spreads[i] = two != 0 ? apart : any != 0 ? spread_one : spread_across;
-    bases[i] = two != 0 ? jump : any != 0 ? 3 : n > 0 ? 4 : 5;
-  }
+  const std::int32_t apart = magnitude(a - b);
+  const std::int32_t two = has_a & has_b;
+  const std::int32_t any = has_a | has_b;
+  const std::int32_t jump = is_positive(apart - edge);
+  const std::int32_t both = between + (jump != 0 ? 0 : blend);
+  out.range[i] = two != 0 ? both : any != 0 ? one : n > 0 ? n : guess;
+  out.carried[i] = carried;
+  const std::int32_t spread_one = n > 0 ? magnitude(n - one) : edge;
+  const std::int32_t spread_across = (has_n & is_positive(nn)) != 0 ? magnitude(n - nn) : edge;
+  out.spread[i] = two != 0 ? apart : any != 0 ? spread_one : spread_across;
+  out.basis[i] = two != 0 ? jump : any != 0 ? 3 : n > 0 ? 4 : 5;
 }
 
 template <bool kAll>
-[[gnu::always_inline]] inline void describe_cells(const Neighbours& at,
+[[gnu::always_inline]] inline void describe_cell(const Neighbours& at,
+                                                 const PredictionScale& levels,
+                                                 const PredictionRows<const std::int32_t>& from,
+                                                 std::size_t i, const ContextRows& out) {
+  using N = Neighbours;
+  const std::int32_t weight = at.weight;
+  const std::int32_t a = at.range[N::a][i];
+  const std::int32_t b = at.range[N::b][i];
+  const std::int32_t n = at.range[N::n][i];
+  const std::int32_t na = at.range[N::na][i];
+  const std::int32_t nb = at.range[N::nb][i];
+  const std::int32_t range = from.range[i];
+  const std::int32_t carried = from.carried[i];
+  const std::int32_t basis = from.basis[i];
+
+  const std::int32_t activity =
+      2 * (at.activity[N::a][i] + at.activity[N::b][i] + at.activity[N::n][i]) +
+      at.activity[N::na][i] + at.activity[N::nb][i] + at.activity[N::sa][i] + at.activity[N::sb][i];
+  const std::int32_t mean = kMeanLevel[static_cast<std::size_t>(activity)];
+  const std::int32_t to_n = n > 0 ? signed_level(n - range, levels) : 20;
+  const std::int32_t to_carried = carried > 0 ? signed_level(carried - range, levels) : 20;
+  const std::int32_t has_a = is_positive(a);
+  const std::int32_t has_b = is_positive(b);
+  const std::int32_t across = is_positive(na) & is_positive(nb);
+  const std::int32_t slope = (has_a & has_b) != 0 ? signed_level(a - b, levels) : 0;
+  const std::int32_t slope_n = across != 0 ? level_of(magnitude(na - nb), levels) : 10;
+  const std::int32_t bend =
+      (across & is_positive(n)) != 0 ? signed_level(n - on_line(na, nb, weight), levels) : 20;
+  const std::int32_t bin = range >> 13;
+  const std::int32_t far = kFarLevel[static_cast<std::size_t>(bin < 0 ? 0 : bin < 255 ? bin : 255)];
+  const std::int32_t firm = is_positive(basis);
+
+  out.of[Contexts::trust][i] = (basis * 10 + level_of(from.spread[i], levels)) * 16 + mean;
+  out.turned[i] = is_positive(n) & is_positive(range - n);
+  if (!kAll) return;
+  out.mean[i] = mean;
+  out.of[Contexts::direction][i] =
+      ((basis * 21 + to_n) * 2 + is_positive(a - range)) * 2 + is_positive(b - range);
+  out.of[Contexts::slope][i] = ((firm * 21 + slope) * 21 + bend) * 11 + slope_n;
+  out.of[Contexts::sides][i] = (basis * 21 + to_carried) * 21 + to_n;
+  out.of[Contexts::distance][i] = ((firm * 16 + mean) * 21 + to_carried) * 16 + far;
+}
+
+// Loops over cells; what they use is copied, so that compilers see that no cell changes it.
+[[gnu::always_inline]] inline void predict_cells(const Neighbours& neighbours,
+                                                 const PredictionScale& scale, std::size_t count,
+                                                 Predictions& out) {
+  const Neighbours at = neighbours;
+  const PredictionScale levels = scale;
+  const PredictionRows<std::int32_t> rows(out);
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < count; ++i) predict_cell(at, levels, i, rows);
+}
+
+template <bool kAll>
+[[gnu::always_inline]] inline void describe_cells(const Neighbours& neighbours,
                                                   const PredictionScale& scale,
                                                   const Predictions& predictions, std::size_t count,
                                                   Contexts& out) {
-  using N = Neighbours;
-  const std::int32_t* const pa = at.range[N::a];
-  const std::int32_t* const pb = at.range[N::b];
-  const std::int32_t* const pn = at.range[N::n];
-  const std::int32_t* const pna = at.range[N::na];
-  const std::int32_t* const pnb = at.range[N::nb];
-  std::array<const std::uint8_t*, N::kActive> active{};
-  for (std::size_t k = 0; k < N::kActive; ++k) active[k] = at.activity[k];
-  const std::int32_t* const predicted = predictions.range.data();
-  const std::int32_t* const carrieds = predictions.carried.data();
-  const std::int32_t* const spreads = predictions.spread.data();
-  const std::int32_t* const bases = predictions.basis.data();
-  std::array<std::int32_t*, Contexts::kCount> to{};
-  for (std::size_t k = 0; k < Contexts::kCount; ++k) to[k] = out.of[k].data();
-  std::int32_t* const means = out.mean.data();
-  const std::int32_t weight = at.weight;
+  const Neighbours at = neighbours;
   const PredictionScale levels = scale;
+  const PredictionRows<const std::int32_t> from(predictions);
+  const ContextRows rows(out);
 #pragma GCC ivdep
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::int32_t a = pa[i];
-    const std::int32_t b = pb[i];
-    const std::int32_t n = pn[i];
-    const std::int32_t na = pna[i];
-    const std::int32_t nb = pnb[i];
-    const std::int32_t range = predicted[i];
-    const std::int32_t carried = carrieds[i];
-    const std::int32_t basis = bases[i];
-
-    const std::int32_t activity = 2 * (active[N::a][i] + active[N::b][i] + active[N::n][i]) +
-                                  active[N::na][i] + active[N::nb][i] + active[N::sa][i] +
-                                  active[N::sb][i];
-    const std::int32_t mean = kMeanLevel[static_cast<std::size_t>(activity)];
-    const std::int32_t to_n = n > 0 ? signed_level(n - range, levels) : 20;
-    const std::int32_t to_carried = carried > 0 ? signed_level(carried - range, levels) : 20;
-    const std::int32_t has_a = is_positive(a);
-    const std::int32_t has_b = is_positive(b);
-    const std::int32_t across = is_positive(na) & is_positive(nb);
-    const std::int32_t slope = (has_a & has_b) != 0 ? signed_level(a - b, levels) : 0;
-    const std::int32_t slope_n = across != 0 ? level_of(magnitude(na - nb), levels) : 10;
-    const std::int32_t bend =
-        (across & is_positive(n)) != 0 ? signed_level(n - on_line(na, nb, weight), levels) : 20;
-    const std::int32_t bin = range >> 13;
-    const std::int32_t far = kFarLevel[static_cast<std::size_t>(bin < 0     ? 0
-                                                                : bin < 255 ? bin
-                                                                            : 255)];
-    const std::int32_t firm = is_positive(basis);
-
-    means[i] = mean;
-    to[Contexts::trust][i] = (basis * 10 + level_of(spreads[i], levels)) * 16 + mean;
-    to[Contexts::direction][i] =
-        ((basis * 21 + to_n) * 2 + is_positive(a - range)) * 2 + is_positive(b - range);
-    if (!kAll) continue;
-    to[Contexts::slope][i] = ((firm * 21 + slope) * 21 + bend) * 11 + slope_n;
-    to[Contexts::sides][i] = (basis * 21 + to_carried) * 21 + to_n;
-    to[Contexts::distance][i] = ((firm * 16 + mean) * 21 + to_carried) * 16 + far;
-  }
+  for (std::size_t i = 0; i < count; ++i) describe_cell<kAll>(at, levels, from, i, rows);
 }
 
 #if defined(__x86_64__)
@@ -304,6 +312,17 @@ void describe(const Neighbours& at, const PredictionScale& scale, const Predicti
   (has_avx2() ? describe_avx2 : plain::describe)(at, scale, predictions, count, all, out);
 }
 
+void predict_one(const Neighbours& at, const PredictionScale& scale, std::size_t i,
+                 Predictions& out) {
+  predict_cell(at, scale, i, PredictionRows<std::int32_t>(out));
+}
+
+void describe_one(const Neighbours& at, const PredictionScale& scale,
+                  const Predictions& predictions, std::size_t i, bool all, Contexts& out) {
+  const PredictionRows<const std::int32_t> from(predictions);
+  (all ? describe_cell<true> : describe_cell<false>)(at, scale, from, i, ContextRows(out));
+}
+
 void Predictions::resize(std::size_t count) {
   for (auto* column : {&range, &carried, &spread, &basis}) column->resize(count);
 }
@@ -311,6 +330,7 @@ void Predictions::resize(std::size_t count) {
 void Contexts::resize(std::size_t count) {
   for (auto& column : of) column.resize(count);
   mean.resize(count);
+  turned.resize(count);
 }
 
 PredictionScale::PredictionScale(std::int32_t step_of_ranges)

@@ -62,7 +62,8 @@ struct Predictions {
 struct Contexts {
   enum Which : std::size_t { trust, slope, sides, distance, direction, kCount };
   std::array<std::vector<std::int32_t>, kCount> of;
-  std::vector<std::int32_t> mean;  ///< activity nearby, 0 to 15
+  std::vector<std::int32_t> mean;    ///< activity nearby, 0 to 15
+  std::vector<std::int32_t> turned;  ///< 1 where the cell across is nearer than the prediction
 
   void resize(std::size_t count);
 };
@@ -90,10 +91,16 @@ struct Stages {
 void predict(const Neighbours& at, const PredictionScale& scale, std::size_t count,
              Predictions& out);
 
-/// Describes the predictions of cells [0, count) of a run. Unless `all`, only `trust`, `direction`
-/// and `mean` are filled.
+/// Describes the predictions of cells [0, count) of a run. Unless `all`, only `trust` and
+/// `turned` are filled.
 void describe(const Neighbours& at, const PredictionScale& scale, const Predictions& predictions,
               std::size_t count, bool all, Contexts& out);
+
+/// The same of cell `i` alone, whose neighbours may be cells just before it.
+void predict_one(const Neighbours& at, const PredictionScale& scale, std::size_t i,
+                 Predictions& out);
+void describe_one(const Neighbours& at, const PredictionScale& scale,
+                  const Predictions& predictions, std::size_t i, bool all, Contexts& out);
 
 /// The two ways to compute the same; `predict` and `describe` take the faster one.
 namespace plain {

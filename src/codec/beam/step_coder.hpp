@@ -8,9 +8,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <type_traits>
 
 #include "codec/beam/occupancy_coder.hpp"
 #include "codec/beam/prediction.hpp"
+#include "codec/beam/quick_residual_coder.hpp"
 #include "codec/beam/residual_coder.hpp"
 #include "codec/entropy/mixer.hpp"
 #include "codec/entropy/range_coder.hpp"
@@ -25,12 +27,10 @@ struct Run {
   std::uint8_t* activity;  ///< of the first cell
   /// Whether a cell's neighbours may be cells before it in this run.
   bool sequential = false;
-
-  /// The run that begins `by` cells later.
-  [[nodiscard]] Run from(std::size_t by) const;
 };
 
-/// Codes runs. So many contexts are mixed for residuals and for states.
+/// Codes runs. So many contexts are mixed for residuals and for states; 1 stands for symbols in
+/// place of bits.
 template <std::size_t kResidualInputs, std::size_t kStateInputs>
 class StepCoder {
  public:
@@ -39,6 +39,7 @@ class StepCoder {
     occupancy_.reset();
     residual_.reset();
     pick_.reset();
+    side_.reset(kFirstSides);
     skip_.reset();
   }
 
@@ -47,6 +48,7 @@ class StepCoder {
   void begin_step(std::int32_t step, std::int32_t tolerance, const Stages& stages) {
     stages_ = stages;
     scale_ = PredictionScale(step);
+    steps_per_unit_ = 1.0 / step;
     tolerance_ = tolerance;
     residual_.soften();
   }
@@ -61,7 +63,8 @@ class StepCoder {
     occupancy_.begin(run.states, truth);
     skipped_ = 0;
     if (!run.sequential) {
-      predict_cells(run, count);
+      predict(run.neighbours, scale_, count, predictions_);
+      simplify(run, 0, count);
       occupancy_.guess_all(run.states);
     }
     for (std::size_t first = 0; first < count; first += kGroup) {
@@ -72,26 +75,20 @@ class StepCoder {
       occupancy_.code_group(coder, run.states, first, last);
     }
     if (run.sequential) {
-      for (std::size_t i = 0; i < count; ++i) {
-        if (run.states.cell[i] != CellState::measured) continue;
-        if (ran_dry(coder)) return;
-        const Run cell = run.from(i);
-        predict_cells(cell, 1);
-        code_ranges(coder, cell, 1, truth == nullptr ? nullptr : truth + i);
-      }
+      code_ranges_in_turn(coder, run, truth);
     } else {
-      code_ranges(coder, run, count, truth);
+      code_ranges(coder, run, truth);
     }
   }
 
  private:
   static constexpr std::size_t kPicks = kResidualInputs > 3 ? 4 : kResidualInputs > 1 ? 2 : 1;
+  static constexpr bool kAllContexts = kResidualInputs > 1;
   using Pick = BitMixer<kPicks>;
 
-  void predict_cells(const Run& run, std::size_t count) {
-    predict(run.neighbours, scale_, count, predictions_);
-    if (stages_.prediction) return;
-    for (std::size_t i = 0; i < count; ++i) {
+  // Predictions of cells [first, last), which are one or all.
+  void simplify(const Run& run, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; !stages_.prediction && i < last; ++i) {
       const std::int32_t before = run.neighbours.range[Neighbours::a][i];
       if (before > 0) predictions_.range[i] = before;
       predictions_.carried[i] = 0;
@@ -99,31 +96,59 @@ class StepCoder {
     }
   }
 
+  // The ranges of a run none of whose cells is a neighbour of another, which have been predicted.
   template <class Coder>
-  void code_ranges(Coder& coder, const Run& run, std::size_t count, const std::int32_t* truth) {
-    constexpr auto kGap = static_cast<std::int32_t>(Basis::gap);
+  void code_ranges(Coder& coder, const Run& run, const std::int32_t* truth) {
+    const std::size_t count = run.states.count;
     const CellState* state = run.states.cell;
-    for (std::size_t i = 0; stages_.edges && i < count; ++i) {
-      if (state[i] != CellState::measured || predictions_.basis[i] != kGap) continue;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!may_have_side(run, i)) continue;
       if (ran_dry(coder)) return;
       pick_side(coder, run, i, truth == nullptr ? 0 : truth[i]);
     }
-    describe(run.neighbours, scale_, predictions_, count, kResidualInputs > 1, contexts_);
+    describe(run.neighbours, scale_, predictions_, count, kAllContexts, contexts_);
     for (std::size_t i = 0; i < count; ++i) {
       if (state[i] != CellState::measured) continue;
       if (ran_dry(coder)) return;
-      const std::int32_t predicted = predictions_.range[i];
-      const std::int32_t wanted = truth == nullptr ? 0 : in_steps(truth[i] - predicted);
-      const std::int32_t steps = residual_.code(coder, contexts_, i, predictions_.basis[i], wanted);
-      const std::int64_t decoded = predicted + std::int64_t{steps} * scale_.step;
-      run.range[i] =
-          static_cast<std::int32_t>(std::clamp<std::int64_t>(decoded, kNearest, kFarthest));
-      run.activity[i] = static_cast<std::uint8_t>(std::min(std::abs(steps), 20));
+      code_range(coder, run, i, truth == nullptr ? 0 : truth[i]);
     }
   }
 
+  // The same of a run whose cells are neighbours of those after them.
+  template <class Coder>
+  void code_ranges_in_turn(Coder& coder, const Run& run, const std::int32_t* truth) {
+    for (std::size_t i = 0; i < run.states.count; ++i) {
+      if (run.states.cell[i] != CellState::measured) continue;
+      if (ran_dry(coder)) return;
+      const std::int32_t range = truth == nullptr ? 0 : truth[i];
+      predict_one(run.neighbours, scale_, i, predictions_);
+      simplify(run, i, i + 1);
+      if (may_have_side(run, i)) pick_side(coder, run, i, range);
+      describe_one(run.neighbours, scale_, predictions_, i, kAllContexts, contexts_);
+      code_range(coder, run, i, range);
+    }
+  }
+
+  [[nodiscard]] bool may_have_side(const Run& run, std::size_t i) const {
+    return stages_.edges && run.states.cell[i] == CellState::measured &&
+           predictions_.basis[i] == static_cast<std::int32_t>(Basis::gap);
+  }
+
+  template <class Coder>
+  void code_range(Coder& coder, const Run& run, std::size_t i, std::int32_t range) {
+    const std::int32_t predicted = predictions_.range[i];
+    const std::int32_t wanted = kDecodes<Coder> ? 0 : in_steps(range - predicted);
+    const std::int32_t steps = residual_.code(coder, contexts_, i, predictions_.basis[i], wanted);
+    const std::int64_t decoded = predicted + std::int64_t{steps} * scale_.step;
+    run.range[i] =
+        static_cast<std::int32_t>(std::clamp<std::int64_t>(decoded, kNearest, kFarthest));
+    run.activity[i] = static_cast<std::uint8_t>(std::min(std::abs(steps), 20));
+  }
+
   [[nodiscard]] std::int32_t in_steps(std::int32_t difference) const {
-    const std::int32_t size = (std::abs(difference) + scale_.step / 2) / scale_.step;
+    // The quotient's floor, exactly, for half a unit keeps it clear of whole numbers.
+    const double rounded = std::abs(difference) + scale_.step / 2 + 0.5;
+    const auto size = static_cast<std::int32_t>(rounded * steps_per_unit_);
     return difference < 0 ? -size : size;
   }
 
@@ -213,13 +238,29 @@ class StepCoder {
       contexts[3] = (across * 8U + below) * 8U + step;
     }
     const bool is_side = apart(range, between) > std::min(apart(range, a), apart(range, b));
-    if (!pick_.code(coder, contexts, rising, is_side)) return;
-    typename Pick::Contexts second = contexts;
-    for (std::uint32_t& context : second) context += 512U;
-    const bool picked_b = pick_.code(coder, second, 2U + rising, apart(range, b) < apart(range, a));
-    predictions_.range[i] = picked_b ? b : a;
+    const Side side = code_side(coder, contexts, rising,
+                                !is_side                            ? Side::none
+                                : apart(range, b) < apart(range, a) ? Side::b
+                                                                    : Side::a);
+    if (side == Side::none) return;
+    predictions_.range[i] = side == Side::b ? b : a;
     predictions_.spread[i] = scale_.edge;
     predictions_.basis[i] = static_cast<std::int32_t>(Basis::side);
+  }
+
+  enum class Side : std::uint8_t { none, a, b };
+
+  template <class Coder>
+  Side code_side(Coder& coder, const typename Pick::Contexts& contexts, std::uint32_t rising,
+                 Side side) {
+    if constexpr (kPicks == 1) {
+      const std::uint32_t symbol = side_.code(coder, contexts[0], static_cast<std::uint32_t>(side));
+      return symbol > 2 ? Side::none : static_cast<Side>(symbol);
+    }
+    if (!pick_.code(coder, contexts, rising, side != Side::none)) return Side::none;
+    typename Pick::Contexts second = contexts;
+    for (std::uint32_t& context : second) context += 512U;
+    return pick_.code(coder, second, 2U + rising, side == Side::b) ? Side::b : Side::a;
   }
 
   // On which side of the jump the cell across lies: 0 and 1 where the jump is there too, 2 where
@@ -251,25 +292,25 @@ class StepCoder {
 
   Stages stages_;
   PredictionScale scale_;
+  double steps_per_unit_ = 1.0;
   std::int32_t tolerance_ = -1;
   std::uint32_t skipped_ = 0;  // the last groups: whether they were left out
   Predictions predictions_;
   Contexts contexts_;
   OccupancyCoder<kStateInputs> occupancy_;
-  ResidualCoder<kResidualInputs> residual_;
+  std::conditional_t<kResidualInputs == 1, QuickResidualCoder, ResidualCoder<kResidualInputs>>
+      residual_;
+  static constexpr SymbolShares kFirstSides = [] {
+    SymbolShares shares{};
+    for (std::size_t k = 1; k < kSymbols; ++k) {
+      shares.from[k] = static_cast<std::int16_t>(
+          k < 4 ? static_cast<int>(k) * 10'800 : (1 << kShareBits) - 16 * static_cast<int>(16 - k));
+    }
+    return shares;
+  }();
+  SymbolCoder side_{448};
   Pick pick_{10, 4};
   BitMixer<3> skip_{10, 8};
 };
-
-inline Run Run::from(std::size_t by) const {
-  Run later = *this;
-  for (auto& range_of : later.neighbours.range) range_of += by;
-  for (auto& activity_of : later.neighbours.activity) activity_of += by;
-  later.states.cell += by;
-  later.states.count -= by;
-  later.range += by;
-  later.activity += by;
-  return later;
-}
 
 }  // namespace sweepcast::beam

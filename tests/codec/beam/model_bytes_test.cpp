@@ -148,7 +148,7 @@ TEST(ModelBytes, NumbersBeyondTheirBoundsAreRefused) {
 std::vector<std::int32_t> back_of(const std::vector<std::byte>& bytes, std::size_t count,
                                   std::int32_t turn) {
   std::vector<std::int32_t> ticks(count);
-  EXPECT_TRUE(read_firings(bytes, turn, ticks));
+  EXPECT_TRUE(FiringCoder().read(bytes, turn, ticks));
   return ticks;
 }
 
@@ -163,7 +163,7 @@ TEST(FiringBytes, TicksComeBack) {
     }
     if (i == 0) ticks.clear();
     std::vector<std::byte> bytes;
-    write_firings(ticks, bytes);
+    FiringCoder().write(ticks, bytes);
     EXPECT_EQ(back_of(bytes, ticks.size(), kMaxTicks), ticks);
   }
 }
@@ -174,7 +174,7 @@ TEST(FiringBytes, PeriodicTicksCostLittle) {
     ticks.push_back(tick);
   }
   std::vector<std::byte> bytes;
-  write_firings(ticks, bytes);
+  FiringCoder().write(ticks, bytes);
   EXPECT_LT(bytes.size(), 60U) << ticks.size() << " firings";
   EXPECT_EQ(back_of(bytes, ticks.size(), 4000), ticks);
 }
@@ -187,12 +187,12 @@ TEST(FiringBytes, WhichFiringsAreHeldCostsLittle) {
     ticks.push_back(tick);
   }
   std::vector<std::byte> alone, both;
-  write_firings(ticks, alone);
-  write_firings(ticks, both, held);
+  FiringCoder().write(ticks, alone);
+  FiringCoder().write(ticks, both, held);
   EXPECT_LT(both.size(), alone.size() + 40U);
   std::vector<std::int32_t> ticks_back(ticks.size());
   std::vector<std::uint8_t> held_back(ticks.size(), 2);
-  EXPECT_TRUE(read_firings(both, 36'000, ticks_back, held_back));
+  EXPECT_TRUE(FiringCoder().read(both, 36'000, ticks_back, held_back));
   EXPECT_EQ(ticks_back, ticks);
   EXPECT_EQ(held_back, held);
 }
@@ -200,9 +200,9 @@ TEST(FiringBytes, WhichFiringsAreHeldCostsLittle) {
 TEST(FiringBytes, TicksBeyondTheTurnAreRefused) {
   std::vector<std::int32_t> ticks{3, 500, 1999};
   std::vector<std::byte> bytes;
-  write_firings(ticks, bytes);
-  EXPECT_TRUE(read_firings(bytes, 2000, ticks));
-  EXPECT_FALSE(read_firings(bytes, 1999, ticks));
+  FiringCoder().write(ticks, bytes);
+  EXPECT_TRUE(FiringCoder().read(bytes, 2000, ticks));
+  EXPECT_FALSE(FiringCoder().read(bytes, 1999, ticks));
 }
 
 TEST(FiringBytes, DamagedBytesAreRefusedOrStillIncrease) {
@@ -211,7 +211,7 @@ TEST(FiringBytes, DamagedBytesAreRefusedOrStillIncrease) {
     std::vector<std::byte> bytes(static_cast<std::size_t>(uniform_int(random, 0, 200)));
     for (std::byte& byte : bytes) byte = static_cast<std::byte>(random_bits(random));
     std::vector<std::int32_t> ticks(static_cast<std::size_t>(uniform_int(random, 0, 300)));
-    if (!read_firings(bytes, 2000, ticks)) continue;
+    if (!FiringCoder().read(bytes, 2000, ticks)) continue;
     for (std::size_t k = 0; k < ticks.size(); ++k) {
       EXPECT_TRUE(ticks[k] < 2000 && ticks[k] > (k == 0 ? -1 : ticks[k - 1]));
     }

@@ -147,7 +147,7 @@ Bytes huge_image(int beams, std::int32_t ticks, int base) {
   std::vector<std::int32_t> firing_ticks(static_cast<std::size_t>(ticks));
   std::iota(firing_ticks.begin(), firing_ticks.end(), 0);
   Bytes firings;
-  beam::write_firings(firing_ticks, firings);
+  beam::FiringCoder().write(firing_ticks, firings);
   Bytes grid;
   ByteWriter grid_out(grid);
   grid_out.put_varint(static_cast<std::uint64_t>(ticks));
@@ -188,7 +188,7 @@ TEST(BeamMutation, ImagesThatTheBytesCannotHoldAreRefused) {
 TEST(BeamMutation, MorePointsThanAnnouncedAreRefused) {
   std::vector<beam::LatticePoint> points(50, {1, 2, 3});
   Bytes extras = numbers({points.size(), 100});
-  beam::write_octree(points, extras);
+  beam::OctreeCoder().write(points, extras);
   const auto decode = [&](std::uint32_t announced) {
     PointCloud cloud;
     const Bytes frame =

@@ -17,7 +17,7 @@ constexpr int kMost = kLatticeLimit - 1;
 
 std::vector<std::byte> bytes_of(std::vector<LatticePoint>& points) {
   std::vector<std::byte> bytes;
-  write_octree(points, bytes);
+  OctreeCoder().write(points, bytes);
   return bytes;
 }
 
@@ -26,7 +26,7 @@ std::size_t expect_round_trip(const std::vector<LatticePoint>& points) {
   std::vector<LatticePoint> in_order = points;
   const std::vector<std::byte> bytes = bytes_of(in_order);
   std::vector<LatticePoint> back(points.size());
-  EXPECT_TRUE(read_octree(bytes, back));
+  EXPECT_TRUE(OctreeCoder().read(bytes, back));
   EXPECT_EQ(back, in_order);
   std::vector<LatticePoint> sorted = points;
   std::sort(sorted.begin(), sorted.end());
@@ -94,7 +94,7 @@ TEST(Octree, CutBytesAreRefusedOrGiveOtherPoints) {
   std::size_t refused = 0;
   for (std::size_t size = 0; size + 5 < bytes.size(); size += 13) {
     std::vector<LatticePoint> back(points.size());
-    if (read_octree(std::span<const std::byte>(bytes).first(size), back)) {
+    if (OctreeCoder().read(std::span<const std::byte>(bytes).first(size), back)) {
       EXPECT_NE(back, points) << size;
     } else {
       ++refused;
@@ -109,7 +109,7 @@ TEST(Octree, RandomBytesGivePointsWithinTheLattice) {
     std::vector<std::byte> bytes(static_cast<std::size_t>(uniform_int(random, 0, 400)));
     for (std::byte& byte : bytes) byte = static_cast<std::byte>(random_bits(random));
     std::vector<LatticePoint> back(static_cast<std::size_t>(uniform_int(random, 0, 400)));
-    if (!read_octree(bytes, back)) continue;
+    if (!OctreeCoder().read(bytes, back)) continue;
     for (const LatticePoint& point : back) {
       for (const std::int32_t coordinate : point) {
         EXPECT_TRUE(coordinate >= -kLatticeLimit && coordinate <= kMost);

@@ -21,13 +21,15 @@ TEST(PointOrder, FiringByFiringThenRowByRow) {
                  5, 5, 0, 5,  //
                  0, 5, 5, 0};
   std::vector<std::uint32_t> slots{99};
-  firing_order(image, slots);
+  std::vector<std::uint32_t> next;
+  firing_order(image, next, slots);
   EXPECT_EQ(slots, (std::vector<std::uint32_t>{99, 0, 4, 6, 1, 2, 7, 3, 5}));
 }
 
 TEST(PointOrder, NoImageNoPoints) {
   std::vector<std::uint32_t> slots;
-  firing_order({}, slots);
+  std::vector<std::uint32_t> next;
+  firing_order({}, next, slots);
   EXPECT_TRUE(slots.empty());
 }
 
