@@ -4,11 +4,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "codec/entropy/mixer.hpp"
 #include "sweepcast/cloud.hpp"
 
 namespace sweepcast::beam {
@@ -18,34 +18,37 @@ using LatticePoint = std::array<std::int32_t, 3>;
 
 inline constexpr std::int32_t kLatticeLimit = 1 << 20;
 
+/// The bits of the coordinates + 2^20 interleaved, x highest (Morton's code); and back.
+[[nodiscard]] std::uint64_t lattice_code(const LatticePoint& point);
+[[nodiscard]] LatticePoint lattice_point(std::uint64_t code);
+
+struct OctreePlace;
+struct OctreeTables;
+
 /// Codes points on the lattice; keeps its tables and buffers.
 class OctreeCoder {
  public:
+  OctreeCoder();
+  OctreeCoder(OctreeCoder&&) noexcept;
+  OctreeCoder& operator=(OctreeCoder&&) noexcept;
+  ~OctreeCoder();
+
   /// Sorts points, and what belongs to each, into the order in which they will be decoded.
   void sort(std::vector<LatticePoint>& points, std::vector<std::uint32_t>& belongings);
 
-  /// Sorts `points` into the order in which they will be decoded and writes them.
-  void write(std::vector<LatticePoint>& points, std::vector<std::byte>& out);
+  /// Writes points that `sort` has sorted.
+  void write(std::span<const LatticePoint> points, std::vector<std::byte>& out);
 
   /// The inverse. `points.size()` says how many there are; false where the bytes do not have that
   /// many.
   [[nodiscard]] bool read(std::span<const std::byte> bytes, std::vector<LatticePoint>& points);
 
-  /// What is learnt of splits.
-  struct Tables {
-    BitMixer<3> both{14, 8};
-    BitMixer<3> side{14, 8};
-    BitMixer<3> number{12, 8};
-
-    void reset() {
-      for (auto* table : {&both, &side, &number}) table->reset();
-    }
-  };
-
  private:
-  Tables tables_;
-  std::vector<std::uint64_t> codes_;
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> places_;  ///< codes and belongings
+  [[nodiscard]] OctreeTables& tables();  // made when first needed: most sweeps have no extras
+
+  std::unique_ptr<OctreeTables> tables_;
+  std::vector<OctreePlace> places_;
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> codes_;  ///< and what belongs to them
 };
 
 /// Appends the points' coordinates to a cloud: `step` is the lattice's, metres.

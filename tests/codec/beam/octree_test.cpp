@@ -15,9 +15,13 @@ using test::uniform_int;
 
 constexpr int kMost = kLatticeLimit - 1;
 
+/// Sorts the points and writes them.
 std::vector<std::byte> bytes_of(std::vector<LatticePoint>& points) {
+  std::vector<std::uint32_t> order(points.size());
+  OctreeCoder octree;
+  octree.sort(points, order);
   std::vector<std::byte> bytes;
-  OctreeCoder().write(points, bytes);
+  octree.write(points, bytes);
   return bytes;
 }
 
