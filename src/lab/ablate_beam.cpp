@@ -11,6 +11,7 @@
 #include "codec/beam/codec.hpp"
 #include "codec/beam/error_bound.hpp"
 #include "codec/beam/model_bytes.hpp"
+#include "codec/beam/place_choice.hpp"
 #include "sensor/beam_grid.hpp"
 #include "sweepcast/cloud_file.hpp"
 #include "sweepcast/sensor_model.hpp"
@@ -46,19 +47,21 @@ Pieces pieces_of(const FrameHeader& frame) {
 std::size_t octree_bytes(const PointCloud& cloud, const std::vector<std::uint32_t>& points,
                          double max_error_m) {
   const double step_m = static_cast<double>(beam::extras_step(max_error_m)) / kRangeUnits;
-  std::vector<LatticePoint> lattice;
+  PointCloud inside;
   for (const std::uint32_t point : points) {
-    const std::array<double, 3> xyz{cloud.x[point], cloud.y[point], cloud.z[point]};
     LatticePoint place{};
-    bool inside = true;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double steps = std::floor(xyz[axis] / step_m + 0.5);
-      inside = inside && std::abs(steps) < beam::kLatticeLimit;
-      place[axis] = inside ? static_cast<std::int32_t>(steps) : 0;
+    if (!beam::nearest_place({cloud.x[point], cloud.y[point], cloud.z[point]}, step_m, place)) {
+      continue;
     }
-    if (inside) lattice.push_back(place);
+    inside.x.push_back(cloud.x[point]);
+    inside.y.push_back(cloud.y[point]);
+    inside.z.push_back(cloud.z[point]);
   }
+  std::vector<LatticePoint> lattice;
+  beam::choose_places(inside.x, inside.y, inside.z, step_m, max_error_m, lattice);
   if (lattice.empty()) return 0;
+  std::vector<std::uint32_t> order(lattice.size());
+  beam::sort_for_octree(lattice, order);
   std::vector<std::byte> bytes;
   beam::write_octree(lattice, bytes);
   constexpr std::size_t kHead = 5;  // how many, and the step

@@ -35,6 +35,7 @@ inline std::vector<CrossCase> cross_cases() {
   const auto plain = two_sweeps({});
   add("fast", plain, [](BeamOptions& o) { o.effort = Effort::fast; });
   add("fine", plain, [](BeamOptions& o) { o.max_error_m = 0.002; });
+  add("best", plain, [](BeamOptions& o) { o.effort = Effort::best; });
   add("coarse best", plain, [](BeamOptions& o) {
     o.max_error_m = 0.5;
     o.effort = Effort::best;
@@ -48,7 +49,9 @@ inline std::vector<CrossCase> cross_cases() {
     o.level = 5;
     o.effort = Effort::best;
   });
-  add("jitter", two_sweeps({.seed = 5, .jitter_deg = 0.2}), [](BeamOptions&) {});
+  const auto jitter = two_sweeps({.seed = 5, .jitter_deg = 0.2});
+  add("jitter", jitter, [](BeamOptions& o) { o.effort = Effort::fast; });
+  add("crowded", jitter, [](BeamOptions&) {});
   add("deskewed", two_sweeps({.beams = 24, .firings = 360, .seed = 7, .deskewed = true}),
       [](BeamOptions& o) { o.max_error_m = 0.02; });
 

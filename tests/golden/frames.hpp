@@ -76,8 +76,10 @@ inline std::vector<GoldenSource> golden_sources() {
     o.level = 5;
     o.effort = Effort::fast;
   });
-  add_beam("beam_jitter", {.firings = 160, .jitter_deg = 0.2},
-           [](BeamOptions& o) { o.max_error_m = 0.1; });
+  add_beam("beam_jitter", {.firings = 160, .jitter_deg = 0.2}, [](BeamOptions& o) {
+    o.max_error_m = 0.1;
+    o.effort = Effort::fast;
+  });
   add_beam("beam_deskewed", {.beams = 24, .firings = 360, .deskewed = true},
            [](BeamOptions& o) { o.max_error_m = 0.05; });
   add_beam("beam_attributes", rich, [](BeamOptions& o) { o.intensity_step = 20; });
@@ -96,6 +98,8 @@ inline std::vector<GoldenSource> golden_sources() {
   EncoderOptions octree;
   octree.codec = CodecId::beam;
   sources.push_back({"beam_octree", octree, made_scatter(200, 1)});
+  add_beam("beam_crowded", {.firings = 160, .jitter_deg = 0.2},
+           [](BeamOptions& o) { o.max_error_m = 0.1; });
   return sources;
 }
 

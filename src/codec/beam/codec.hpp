@@ -58,6 +58,8 @@ class Encoder {
   [[nodiscard]] double error_m() const { return quality_.step_m[0] / 2.0; }
   [[nodiscard]] Status fit_budget(const CloudView& cloud, const SweepInfo& info, PartList& parts,
                                   SweepCounts& counts);
+  void write_smallest(const CloudView& cloud, const SweepInfo& info, PartList& parts,
+                      SweepCounts& counts);
   void write_sweep(const CloudView& cloud, PartList& parts, SweepCounts& counts);
   void plan_layers();
   void write_model_part(PartList& parts);
@@ -69,12 +71,20 @@ class Encoder {
   void give_back();
   void write_exact_part(std::span<const std::int32_t> ranges, PartList& parts);
 
+  /// Which points of the image are extras, because so they take fewer bytes.
+  struct ExtrasChoice {
+    std::int32_t nearer = 0;  ///< those at lower ranges, 0.1 mm
+    bool all = false;
+  };
+
   BeamOptions options_;
   SweepImager imager_;
   BeamQuality quality_;
   std::optional<ByteBudget> budget_;
   std::optional<std::uint32_t> sent_model_;  ///< id of the model that the decoder has
   int frames_since_model_ = 0;
+  ExtrasChoice extras_;
+  int frames_to_review_ = 0;  ///< `extras_`
   PointCloud placed_;
   LayerPlan plan_;
   std::vector<std::int32_t> range_, azimuth_, height_;  ///< the image, columns aligned by azimuth

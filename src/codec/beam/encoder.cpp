@@ -2,11 +2,14 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "codec/beam/alignment.hpp"
 #include "codec/beam/codec.hpp"
+#include "codec/beam/crowding.hpp"
 #include "codec/beam/error_bound.hpp"
 #include "codec/beam/model_bytes.hpp"
+#include "codec/beam/place_choice.hpp"
 #include "rate/beam_quality.hpp"
 
 namespace sweepcast::beam {
@@ -20,6 +23,11 @@ constexpr int kBaseCols = 16;
 // it gives the fewest bytes in all, within 2 % on every sensor's sweeps.
 constexpr double kLosslessError = 0.01;
 
+// How often a crowded sweep is coded with more points as extras.
+constexpr int kMostTries = 4;
+// After how many frames that is done again.
+constexpr int kReviewInterval = 10;
+
 std::uint64_t as_unsigned(std::int64_t value) {
   return static_cast<std::uint64_t>(value);
 }
@@ -29,6 +37,19 @@ BeamQuality quality_of(const BeamOptions& options) {
   BeamQuality quality;
   quality.step_m.fill(2.0 * (options.lossless ? kLosslessError : options.max_error_m));
   return quality;
+}
+
+bool is_layer(std::uint8_t kind) {
+  return kind >= static_cast<std::uint8_t>(Part::layer) &&
+         kind < static_cast<std::uint8_t>(Part::layer_attributes);
+}
+
+std::size_t range_bytes(const PartList& parts) {
+  std::size_t bytes = 0;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (is_layer(parts.kind(i))) bytes += parts.part(i).size();
+  }
+  return bytes;
 }
 
 std::uint32_t count_points(std::span<const std::int32_t> range) {
@@ -78,12 +99,69 @@ Status Encoder::encode(const CloudView& cloud, const SweepInfo& info, PartList& 
   if (budget_) quality_ = beam_quality(budget_->begin());
   attributes_.read(cloud, options_);
   imager_.project(cloud, error_m(), counts);
-  write_model_part(parts);
-  if (!budget_) {
-    write_sweep(cloud, parts, counts);
-    return {};
+  const bool may_choose = !budget_ && !options_.level && !options_.lossless &&
+                          options_.effort != Effort::fast && imager_.image().cols > 0;
+  const bool review = may_choose && frames_to_review_-- == 0;
+  if (may_choose && !review) {
+    if (extras_.all) {
+      imager_.move_all();
+    } else {
+      imager_.move_nearer(extras_.nearer);
+    }
   }
-  return fit_budget(cloud, info, parts, counts);
+  write_model_part(parts);
+  if (budget_) return fit_budget(cloud, info, parts, counts);
+  if (review) {
+    write_smallest(cloud, info, parts, counts);
+  } else {
+    write_sweep(cloud, parts, counts);
+  }
+  return {};
+}
+
+// Where points crowd, tries which of them had better be extras, keeps the smallest frame, and does
+// likewise in the frames that follow.
+void Encoder::write_smallest(const CloudView& cloud, const SweepInfo& info, PartList& parts,
+                             SweepCounts& counts) {
+  const SweepCounts projected = counts;
+  const std::size_t kept = parts.size();
+  const double step = static_cast<double>(extras_step(error_m())) / kRangeUnits;
+  write_sweep(cloud, parts, counts);
+  frames_to_review_ = kReviewInterval - 1;
+  extras_ = {};
+  PartList smallest;
+  SweepCounts its_counts;
+  std::size_t least = 0;
+  const auto keep_smaller = [&](const ExtrasChoice& choice) {
+    const std::size_t size = frame_size(CodecId::beam, info, counts, parts, 0);
+    if (least != 0 && size >= least) return false;
+    least = size;
+    smallest = parts;
+    its_counts = counts;
+    extras_ = choice;
+    return true;
+  };
+  const auto try_again = [&](std::size_t first, const ExtrasChoice& choice) {
+    parts.truncate(first);
+    counts = projected;
+    write_sweep(cloud, parts, counts);
+    return keep_smaller(choice);
+  };
+  for (int tries = 0; tries < kMostTries; ++tries) {
+    const std::int32_t range = crowded_range(imager_.image(), imager_.x(), imager_.y(), imager_.z(),
+                                             step, range_bytes(parts));
+    if (range == 0) break;
+    if (tries == 0) keep_smaller({});
+    imager_.move_nearer(range);
+    if (!try_again(kept, {range, false})) break;
+  }
+  if (least == 0) return;  // no crowd
+  imager_.move_all();
+  try_again(0, {0, true});
+  parts = std::move(smallest);
+  counts = its_counts;
+  // A model that this frame was to bring comes with the next that has an image.
+  if (kept > 0 && parts.kind(0) != static_cast<std::uint8_t>(Part::model)) sent_model_.reset();
 }
 
 // Tries qualities until the frame, its sensor model apart, fits.
@@ -225,7 +303,7 @@ void Encoder::plan_layers() {
 
 void Encoder::write_model_part(PartList& parts) {
   const SensorModel* model = imager_.model();
-  if (model == nullptr) return;
+  if (model == nullptr || imager_.image().cols == 0) return;
   if (sent_model_ == imager_.model_id() && ++frames_since_model_ < options_.model_interval) return;
   sent_model_ = imager_.model_id();
   frames_since_model_ = 0;
@@ -259,30 +337,32 @@ void Encoder::write_grid(PartList& parts) {
 
 // Puts the points without a cell on a lattice, and counts those that cannot be coded.
 void Encoder::gather_extras(SweepCounts& counts) {
-  lattice_.clear();
   extra_points_.clear();
-  const double per_metre = double{kRangeUnits} / extras_step(error_m());
+  placed_.clear();
+  lattice_.clear();
+  const double step = static_cast<double>(extras_step(error_m())) / kRangeUnits;
   for (const ExtraPoint& extra : imager_.image().extras) {
-    const std::array<double, 3> xyz{imager_.x()[extra.point], imager_.y()[extra.point],
-                                    imager_.z()[extra.point]};
+    const float x = imager_.x()[extra.point];
+    const float y = imager_.y()[extra.point];
+    const float z = imager_.z()[extra.point];
     LatticePoint place{};
-    bool inside = true;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double steps = std::floor(xyz[axis] * per_metre + 0.5);
-      inside = inside && std::abs(steps) < kLatticeLimit;  // not so where it is NaN
-      place[axis] = inside ? static_cast<std::int32_t>(steps) : 0;
-    }
-    if (!(std::isfinite(xyz[0]) && std::isfinite(xyz[1]) && std::isfinite(xyz[2]))) {
+    if (!(std::isfinite(x) && std::isfinite(y) && std::isfinite(z))) {
       ++counts.not_finite;
-    } else if (xyz[0] == 0.0 && xyz[1] == 0.0 && xyz[2] == 0.0) {
+    } else if (x == 0.0F && y == 0.0F && z == 0.0F) {
       ++counts.zero_range;
-    } else if (!inside) {
+    } else if (!nearest_place({x, y, z}, step, place)) {
       ++counts.out_of_view;
     } else {
       lattice_.push_back(place);
       extra_points_.push_back(extra.point);
+      placed_.x.push_back(x);
+      placed_.y.push_back(y);
+      placed_.z.push_back(z);
     }
   }
+  // What is missing to the exact coordinates takes the fewer bytes the less it is.
+  if (options_.lossless) return;
+  choose_places(placed_.x, placed_.y, placed_.z, step, error_m(), lattice_);
 }
 
 void Encoder::write_extras(PartList& parts, SweepCounts& counts) {

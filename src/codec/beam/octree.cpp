@@ -4,135 +4,115 @@
 #include <bit>
 #include <utility>
 
-#include "codec/entropy/mixer.hpp"
+#include "codec/beam/octree_coder.hpp"
 #include "codec/entropy/range_coder.hpp"
 
 namespace sweepcast::beam {
 namespace {
 
-constexpr int kDepth = 21;  // levels: coordinates take 21 bits each
+constexpr int kDepth = 21;  // coordinates take 21 bits each
 
-// Interleaves the bits of the coordinates, x highest.
-std::uint64_t morton(const LatticePoint& point) {
+// Puts two zeros between any two of a number's lowest 21 bits.
+std::uint64_t spread(std::uint64_t bits) {
+  bits = (bits | bits << 32) & 0x001F00000000FFFFU;
+  bits = (bits | bits << 16) & 0x001F0000FF0000FFU;
+  bits = (bits | bits << 8) & 0x100F00F00F00F00FU;
+  bits = (bits | bits << 4) & 0x10C30C30C30C30C3U;
+  return (bits | bits << 2) & 0x1249249249249249U;
+}
+
+// Takes every third bit.
+std::uint64_t gather(std::uint64_t bits) {
+  bits &= 0x1249249249249249U;
+  bits = (bits | bits >> 2) & 0x10C30C30C30C30C3U;
+  bits = (bits | bits >> 4) & 0x100F00F00F00F00FU;
+  bits = (bits | bits >> 8) & 0x001F0000FF0000FFU;
+  bits = (bits | bits >> 16) & 0x001F00000000FFFFU;
+  return (bits | bits >> 32) & 0x1FFFFFU;
+}
+
+// Half the root cube's side, as a power of two: all coordinates lie in [-2^half, 2^half).
+template <class Coder>
+int code_half(Coder& coder, int half) {
+  int coded = 0;
+  for (int bit = 5; bit-- > 0;) {
+    coded =
+        coded * 2 + (coder.code(((half >> bit) & 1) != 0, 1U << (kProbabilityBits - 1)) ? 1 : 0);
+  }
+  return coded;
+}
+
+}  // namespace
+
+std::uint64_t lattice_code(const LatticePoint& point) {
   std::uint64_t code = 0;
-  for (int bit = kDepth; bit-- > 0;) {
-    for (const std::int32_t coordinate : point) {
-      const auto shifted = static_cast<std::uint32_t>(coordinate + kLatticeLimit);
-      code = code * 2 + ((shifted >> bit) & 1U);
-    }
+  for (const std::int32_t coordinate : point) {
+    code = code << 1 | spread(static_cast<std::uint32_t>(coordinate + kLatticeLimit));
   }
   return code;
 }
 
-LatticePoint point_of(std::uint64_t code) {
-  std::array<std::uint32_t, 3> shifted{};
-  for (int bit = kDepth; bit-- > 0;) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      shifted[axis] =
-          shifted[axis] * 2 +
-          static_cast<std::uint32_t>((code >> (3 * bit + 2 - static_cast<int>(axis))) & 1U);
-    }
-  }
+LatticePoint lattice_point(std::uint64_t code) {
   LatticePoint point;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    point[axis] = static_cast<std::int32_t>(shifted[axis]) - kLatticeLimit;
+    point[axis] = static_cast<std::int32_t>(gather(code >> (2 - axis))) - kLatticeLimit;
   }
   return point;
 }
 
-// Walks the tree depth first. Each node says how many of its points lie in the lower half of each
-// axis in turn: a binary split of the Morton codes. Counts of one need a bit a level, no more.
-template <class Coder>
-class TreeCoder {
- public:
-  explicit TreeCoder(Coder& coder) : coder_(coder) {}
-
-  /// Codes the split of `codes`, which share all but their lowest `level` bits. Decoding: `codes`
-  /// is where to put them, `prefix` the bits above.
-  void code(std::span<std::uint64_t> codes, int level, std::uint64_t prefix, std::uint32_t parent) {
-    if (level == 0) {
-      for (std::uint64_t& code : codes) code = prefix;
-      return;
-    }
-    const std::uint64_t high_bit = std::uint64_t{1} << (level - 1);
-    const auto first_high = std::partition_point(
-        codes.begin(), codes.end(), [&](std::uint64_t code) { return (code & high_bit) == 0; });
-    const auto low = split(static_cast<std::uint32_t>(codes.size()),
-                           static_cast<std::uint32_t>(first_high - codes.begin()), level, parent);
-    const std::uint32_t shape = parent * 3U + (low == 0 ? 0U : low == codes.size() ? 1U : 2U);
-    const std::uint32_t next = shape % 59'049U;  // the shapes of the last ten splits
-    if (ran_dry(coder_)) return;
-    if (low > 0) code(codes.first(low), level - 1, prefix, next);
-    if (low < codes.size()) code(codes.subspan(low), level - 1, prefix | high_bit, next);
-  }
-
- private:
-  // How many of `count` lie in the lower half: whether all are on one side, which, and else a
-  // number between, in bits.
-  std::uint32_t split(std::uint32_t count, std::uint32_t low, int level, std::uint32_t parent) {
-    const std::uint32_t size = std::min<std::uint32_t>(std::bit_width(count), 6U);
-    const auto at = static_cast<std::uint32_t>(level);
-    BitMixer<3>::Contexts contexts{hash_context(parent % 729U, size * 64U + at % 3U),
-                                   hash_context(at, 1000U + size),
-                                   hash_context(parent, 2000U + at % 3U + size * 4U)};
-    bool both = false;
-    if (count > 1) both = both_.code(coder_, contexts, size, low > 0 && low < count);
-    if (!both) {
-      for (std::uint32_t& context : contexts) context = hash_context(context, 7U);
-      return side_.code(coder_, contexts, size, low == 0) ? 0 : count;
-    }
-    if (count == 2) return 1;
-    // Between 1 and count - 1: a binary search, its first decisions adaptive.
-    std::uint32_t from = 1;
-    std::uint32_t to = count - 1;
-    for (std::uint32_t step = 0; from < to; ++step) {
-      const std::uint32_t middle = from + (to - from) / 2;
-      const BitMixer<3>::Contexts c{hash_context(step, 3000U + size), hash_context(step, at),
-                                    hash_context(step, parent % 27U + 4000U)};
-      if (number_.code(coder_, c, std::min(step, 7U), low > middle)) {
-        from = middle + 1;
-      } else {
-        to = middle;
-      }
-    }
-    return from;
-  }
-
-  Coder& coder_;
-  BitMixer<3> both_{14, 8};
-  BitMixer<3> side_{14, 8};
-  BitMixer<3> number_{12, 8};
-};
-
-}  // namespace
-
 void sort_for_octree(std::vector<LatticePoint>& points, std::vector<std::uint32_t>& belongings) {
   std::vector<std::pair<std::uint64_t, std::uint32_t>> codes(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) codes[i] = {morton(points[i]), belongings[i]};
+  for (std::size_t i = 0; i < points.size(); ++i)
+    codes[i] = {lattice_code(points[i]), belongings[i]};
   std::sort(codes.begin(), codes.end());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    points[i] = point_of(codes[i].first);
+    points[i] = lattice_point(codes[i].first);
     belongings[i] = codes[i].second;
   }
 }
 
-void write_octree(std::vector<LatticePoint>& points, std::vector<std::byte>& out) {
+void write_octree(std::span<const LatticePoint> points, std::vector<std::byte>& out) {
   if (points.empty()) return;
-  std::vector<std::uint64_t> codes(points.size());
-  std::transform(points.begin(), points.end(), codes.begin(), morton);
-  std::sort(codes.begin(), codes.end());
-  std::transform(codes.begin(), codes.end(), points.begin(), point_of);
+  int half = 0;
+  for (const LatticePoint& point : points) {
+    for (const std::int32_t coordinate : point) {
+      const auto reach = static_cast<std::uint32_t>(coordinate < 0 ? ~coordinate : coordinate);
+      half = std::max(half, static_cast<int>(std::bit_width(reach)));
+    }
+  }
+  std::vector<OctreePlace> places;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (i == 0 || points[i] != points[i - 1]) {
+      OctreePlace place;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        place.at[axis] = static_cast<std::uint32_t>(points[i][axis] + (1 << half));
+      }
+      places.push_back(place);
+    }
+    ++places.back().points;
+  }
   RangeEncoder coder(out);
-  TreeCoder<RangeEncoder>(coder).code(codes, 3 * kDepth, 0, 0);
+  code_half(coder, half);
+  // Fails only for what cannot be: more places than points.
+  static_cast<void>(OctreeCoder<RangeEncoder>(coder).code(places, half + 1, points.size()));
   coder.finish();
 }
 
 bool read_octree(std::span<const std::byte> bytes, std::vector<LatticePoint>& points) {
   if (points.empty()) return true;
-  std::vector<std::uint64_t> codes(points.size());
   RangeDecoder coder(bytes);
-  TreeCoder<RangeDecoder>(coder).code(codes, 3 * kDepth, 0, 0);
-  std::transform(codes.begin(), codes.end(), points.begin(), point_of);
+  const int half = code_half(coder, 0);
+  std::vector<OctreePlace> places;
+  if (half >= kDepth) return false;
+  if (!OctreeCoder<RangeDecoder>(coder).code(places, half + 1, points.size())) return false;
+  std::size_t at = 0;
+  for (const OctreePlace& place : places) {
+    LatticePoint point;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      point[axis] = static_cast<std::int32_t>(place.at[axis]) - (1 << half);
+    }
+    for (std::uint32_t i = 0; i < place.points; ++i) points[at++] = point;
+  }
   return !coder.overran();
 }
 

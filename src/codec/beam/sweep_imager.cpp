@@ -42,7 +42,7 @@ void SweepImager::project(const CloudView& cloud, double max_error_m, SweepCount
   cloud.y.read(0, y_);
   cloud.z.read(0, z_);
   choose(counts);
-  if (!model_) return list_as_extras();
+  if (!model_) return move_all();
   BeamGridOptions grid;
   grid.max_error_m = kAngularShare * max_error_m;
   grid.nearest = kNearest;
@@ -57,7 +57,7 @@ void SweepImager::project(const CloudView& cloud, double max_error_m, SweepCount
   } else {
     projector_->project(floats, chosen_, grid, image_);
   }
-  if (image_.cells() > most_cells(cloud.size)) return list_as_extras();
+  if (image_.cells() > most_cells(cloud.size)) return move_all();
   // Otherwise the grid's own bound on angular errors and the step of ranges are enough.
   const bool mounted = mount_of(*model_, image_.motion) != Mount{};
   if (image_.motion || mounted || !image_.azimuth_residual.empty()) keep_bound(max_error_m);
@@ -78,10 +78,18 @@ void SweepImager::choose(SweepCounts& counts) {
 }
 
 // A sweep without an image.
-void SweepImager::list_as_extras() {
+void SweepImager::move_all() {
   image_ = {};
   for (std::uint32_t i = 0; i < (crops(crop_) ? chosen_.size() : x_.size()); ++i) {
     image_.extras.push_back({crops(crop_) ? chosen_[i] : i, ExtraReason::stray});
+  }
+}
+
+void SweepImager::move_nearer(std::int32_t range) {
+  for (std::size_t cell = 0; cell < image_.cells(); ++cell) {
+    if (image_.range[cell] == 0 || image_.range[cell] >= range) continue;
+    image_.range[cell] = 0;
+    image_.extras.push_back({image_.point[cell], ExtraReason::misfit});
   }
 }
 

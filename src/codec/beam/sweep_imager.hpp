@@ -26,6 +26,10 @@ class SweepImager {
   /// image has no columns. Counts the points that the crop leaves out.
   void project(const CloudView& cloud, double max_error_m, SweepCounts& counts);
 
+  /// Moves to the extras all points nearer than `range`, 0.1 mm; or all, and the image is gone.
+  void move_nearer(std::int32_t range);
+  void move_all();
+
   [[nodiscard]] BeamImage& image() { return image_; }
   [[nodiscard]] const SensorModel* model() const { return model_ ? &*model_ : nullptr; }
   [[nodiscard]] std::uint32_t model_id() const { return model_id_; }  ///< CRC-32 of its bytes
@@ -39,7 +43,6 @@ class SweepImager {
  private:
   void learn_model(const CloudView& cloud);
   void choose(SweepCounts& counts);
-  void list_as_extras();
   void keep_bound(double max_error_m);
 
   Crop crop_;

@@ -41,7 +41,8 @@ TEST(BeamCodec, ACleanSensorsSweepIsKeptWithinTheBound) {
   std::size_t larger = std::numeric_limits<std::size_t>::max();
   for (const double max_error : kErrors) {
     const Bytes frame = expect_round_trip(cloud, max_error);
-    EXPECT_TRUE(has_part(frame, beam::Part::model)) << "the sensor's model was not found";
+    EXPECT_EQ(has_part(frame, beam::Part::model), max_error < 0.4)
+        << "the sensor's model was not found";
     EXPECT_LT(frame.size() * 20, cloud.size() * 16);
     EXPECT_LT(frame.size(), larger);
     larger = frame.size();
@@ -125,6 +126,56 @@ TEST(BeamCodec, FewPointsAndNone) {
       EXPECT_LT(expect_round_trip(cloud, max_error).size(), 60U + 16U * cloud.size());
     }
   }
+}
+
+/// Walls at 5.6 and 3.6 m: within 10 cm, many points share a place.
+PointCloud small_room(std::uint32_t seed) {
+  return test::spinning_sweep(32, 1200, seed, 0.0, 0.4);
+}
+
+TEST(BeamCodec, ASmallRoomIsCodedAsAnOctree) {
+  const PointCloud room = small_room(1);
+  Encoder encoder = test::encoder_of(test::beam_options(0.1));
+  const Bytes frame = test::encode(encoder, room);
+  EXPECT_FALSE(has_part(frame, beam::Part::model));
+  EXPECT_FALSE(has_part(frame, beam::Part::layer));
+  test::expect_kept(room, test::decode(frame), encoder.last_counts(), 0.1);
+  // Coded as an image, which one may insist on.
+  EncoderOptions fast = test::beam_options(0.1);
+  fast.beam.effort = Effort::fast;
+  Encoder imager = test::encoder_of(fast);
+  const Bytes image = test::encode(imager, room);
+  EXPECT_TRUE(has_part(image, beam::Part::layer));
+  EXPECT_LT(frame.size() * 3, image.size() * 2);
+}
+
+TEST(BeamCodec, AStreetIsCodedAsAnImage) {
+  const Bytes frame = expect_round_trip(test::spinning_sweep(32, 1200, 1), 0.05);
+  EXPECT_TRUE(has_part(frame, beam::Part::layer));
+  for (const FramePart& part : header_of(frame).parts) {
+    const bool extras = part.kind == static_cast<std::uint8_t>(beam::Part::extras);
+    EXPECT_LT(part.size, extras ? 200U : frame.size());
+  }
+}
+
+TEST(BeamCodec, TheModelComesWithTheFirstImageAfterASmallRoom) {
+  Encoder encoder = test::encoder_of(test::beam_options(0.1));
+  Decoder decoder;
+  PointCloud cloud;
+  int models = 0;
+  for (std::uint32_t i = 0; i < 22; ++i) {
+    SCOPED_TRACE(i);
+    const PointCloud sweep = i < 5 ? small_room(i) : test::spinning_sweep(32, 1200, i);
+    const Bytes frame = test::encode(encoder, sweep, {i, 0, "s"});
+    const bool image = has_part(frame, beam::Part::layer);
+    EXPECT_FALSE(image && i < 5);
+    EXPECT_TRUE(image || i < 10) << "the choice was not reviewed";
+    EXPECT_TRUE(image || !has_part(frame, beam::Part::model));
+    models += has_part(frame, beam::Part::model) ? 1 : 0;
+    ASSERT_TRUE(decoder.decode(frame, cloud).has_value());
+    test::expect_kept(sweep, cloud, encoder.last_counts(), 0.1);
+  }
+  EXPECT_EQ(models, 2);
 }
 
 TEST(BeamCodec, OptionsOutsideTheirBoundsAreRefused) {

@@ -15,7 +15,10 @@ using test::uniform_int;
 
 constexpr int kMost = kLatticeLimit - 1;
 
+/// Sorts the points and writes them.
 std::vector<std::byte> bytes_of(std::vector<LatticePoint>& points) {
+  std::vector<std::uint32_t> order(points.size());
+  sort_for_octree(points, order);
   std::vector<std::byte> bytes;
   write_octree(points, bytes);
   return bytes;

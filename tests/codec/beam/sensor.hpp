@@ -16,8 +16,9 @@ namespace sweepcast::test {
 
 /// A sensor of `beams` beams from 10 to -20 degrees, 3 cm above and 2 cm beside its axis, in a hall
 /// whose walls stand at `shift` metres from the middle; ground 1.8 m below. A share of the beams
-/// has no return; ranges are noisy by 1 cm.
-inline PointCloud spinning_sweep(int beams, int firings, std::uint32_t seed, double shift = 0.0) {
+/// has no return; ranges are noisy by 1 cm. `size`: of the hall, against its 28 m by 18 m.
+inline PointCloud spinning_sweep(int beams, int firings, std::uint32_t seed, double shift = 0.0,
+                                 double size = 1.0) {
   std::mt19937 random(seed);
   PointCloud cloud;
   for (int firing = 0; firing < firings; ++firing) {
@@ -29,7 +30,8 @@ inline PointCloud spinning_sweep(int beams, int firings, std::uint32_t seed, dou
       const double wall_y = 9.0 / std::max(std::abs(std::sin(azimuth)), 1e-3);
       const double pillar = firing * 36 / firings % 6 == 2 ? 4.5 : 1e9;
       const double ground = elevation < -0.01 ? 1.8 / std::tan(-elevation) : 1e9;
-      const double rho = std::min({wall_x, wall_y, pillar, ground}) + uniform(random, -0.01, 0.01);
+      const double rho =
+          size * std::min({wall_x, wall_y, pillar, ground}) + uniform(random, -0.01, 0.01);
       if (random_bits(random) % 12 == 0) continue;
       const double turned = azimuth + std::asin(0.02 / rho);
       add_point(cloud, rho * std::cos(turned), rho * std::sin(turned),
