@@ -67,6 +67,10 @@ void AttributeEncoder::begin(const SensorModel* model, const BeamImage& image,
       if (format_.has_time) cells_.time[aligned] = points_.time[point];
     });
     fit_tables(*plan, first_col, range, cells_, format_);
+  } else {  // an image that was tried before may have left its own
+    format_.row_ring.clear();
+    format_.row_time.clear();
+    format_.col_time.clear();
   }
   parts.begin(static_cast<std::uint8_t>(Part::attributes));
   write_format(format_, parts.bytes());

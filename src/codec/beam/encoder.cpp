@@ -156,8 +156,10 @@ void Encoder::write_smallest(const CloudView& cloud, const SweepInfo& info, Part
     if (!try_again(kept, {range, false})) break;
   }
   if (least == 0) return;  // no crowd
-  imager_.move_all();
-  try_again(0, {0, true});
+  if (extras_.nearer > 0) {
+    imager_.move_all();
+    try_again(0, {0, true});
+  }
   parts = std::move(smallest);
   counts = its_counts;
   // A model that this frame was to bring comes with the next that has an image.

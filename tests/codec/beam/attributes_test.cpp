@@ -95,6 +95,15 @@ TEST(BeamAttributes, PointsOfNoSensorKeepTheirs) {
   }
 }
 
+TEST(BeamAttributes, CrowdedPointsKeepTheirs) {
+  PointCloud cloud = tagged_sweep(32, 900, 4);
+  for (const double max_error : {0.2, 0.5, 1.0}) {
+    const PointCloud decoded = test::decode(test::encode(test::beam_options(max_error), cloud));
+    EXPECT_EQ(decoded.size(), cloud.size());
+    expect_belongs(cloud, decoded, max_error);
+  }
+}
+
 TEST(BeamAttributes, DuplicatesAndUncodablePoints) {
   PointCloud cloud = tagged_sweep(16, 600, 3);
   const std::size_t before = cloud.size();
