@@ -26,7 +26,8 @@ std::size_t bin_of(std::int32_t range) {
 }
 
 std::int32_t first_range(std::size_t bin) {
-  return static_cast<std::int32_t>((4U + bin % 4U) << (bin / 4U - 3U));
+  const std::size_t width = std::max<std::size_t>(bin / 4U, 3U);
+  return static_cast<std::int32_t>((4U + bin % 4U) << (width - 3U));
 }
 
 // One place of 32 is in the sample, whatever its points.
