@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "rate/qoe.hpp"
+#include "sweepcast/frame.hpp"
 #include "sweepcast/status.hpp"
 
 namespace sweepcast {
@@ -63,13 +64,18 @@ class Strategy {
 [[nodiscard]] std::unique_ptr<Strategy> make_bola();
 /// RobustMPC (Yin, Jindal, Sekar, Sinopoli 2015) with the paper's QoE as its aim.
 [[nodiscard]] std::unique_ptr<Strategy> make_mpc();
-/// Ours: a byte budget a sweep, the freshest first.
+/// Ours: a byte budget a sweep, the freshest first; for codecs that fit a frame to a size and whose
+/// frames have layers.
 [[nodiscard]] std::unique_ptr<Strategy> make_budget();
+/// Ours for the other codecs: levels planned ahead for the estimated rate, with the paper's QoE as
+/// its aim; see `LadderPlan`.
+[[nodiscard]] std::unique_ptr<Strategy> make_planned_levels();
 
 /// Names that `make_strategy` knows beside "fixed:L".
 inline constexpr std::string_view kStrategyNames = "budget, paper, bola, mpc, fixed:0 to fixed:5";
 
-/// A strategy by its name. Errors: invalid_argument, with the names that there are.
-[[nodiscard]] Result<std::unique_ptr<Strategy>> make_strategy(std::string_view name);
+/// A strategy by its name; "budget" is `make_budget` for codec beam, else `make_planned_levels`.
+/// Errors: invalid_argument, with the names that there are.
+[[nodiscard]] Result<std::unique_ptr<Strategy>> make_strategy(std::string_view name, CodecId codec);
 
 }  // namespace sweepcast

@@ -1,7 +1,7 @@
 // Ours: what the link will surely take until the next sweep, the freshest sweep first.
 #include <algorithm>
-#include <cmath>
 
+#include "rate/rate_estimate.hpp"
 #include "rate/strategy.hpp"
 
 namespace sweepcast {
@@ -22,12 +22,8 @@ constexpr double kFirstRate = 100e3;
 class Budget final : public Strategy {
  public:
   Choice decide(const LinkView& view) override {
-    if (view.busy_s > 0.0) {
-      const double keep = std::exp(-view.busy_s / kMemory);
-      const double rate = static_cast<double>(view.sent_bytes) / view.busy_s;
-      rate_ = keep * rate_ + (1.0 - keep) * rate;
-    }
-    const double wanted = kShare * rate_ * view.period_s;
+    rate_.add(view.sent_bytes, view.busy_s);
+    const double wanted = kShare * rate_.bytes_per_s() * view.period_s;
     budget_ = std::clamp(std::min(wanted, kGrowth * budget_), kLeast, kMost);
     return {.bytes = static_cast<std::size_t>(budget_)};
   }
@@ -35,7 +31,7 @@ class Budget final : public Strategy {
   SendOrder order() const override { return SendOrder::freshest_first; }
 
  private:
-  double rate_ = kFirstRate;  ///< bytes a second
+  RateEstimate rate_{kMemory, kFirstRate};
   double budget_ = kLeast;
 };
 

@@ -9,9 +9,11 @@
 namespace sweepcast {
 namespace {
 
-/// Sweeps that are planned ahead, and rates that the prediction looks back on: the MPC paper's.
+/// Steps that are planned ahead, and rates that the prediction looks back on: the MPC paper's.
 constexpr int kHorizon = 5;
 constexpr std::size_t kRates = 5;
+/// Sweeps that a step takes: a second, as a chunk of video takes seconds.
+constexpr double kStepSweeps = 10.0;
 /// A rate is measured where the link was busy for at least so long, seconds.
 constexpr double kLeastBusy = 0.005;
 /// Until a rate is measured, and where nothing at all went through, bytes a second.
@@ -62,14 +64,16 @@ class Mpc final : public Strategy {
     return harmonic_mean() / (1.0 + error);
   }
 
-  /// The most that sending at this level and `depth - 1` more sweeps is worth.
+  /// The most that a step at this level and `depth - 1` more are worth.
   double plan(std::size_t level, double backlog, double last_quality, int depth) const {
-    const auto bytes = static_cast<double>(view_->level_bytes[level]);
     const double quality = level_quality(level);
-    backlog = std::max(0.0, backlog + bytes - sweep_bytes_);
-    // Frames in the queue: as many as bytes of this size fill.
+    const double growth = static_cast<double>(view_->level_bytes[level]) - sweep_bytes_;
+    const double end = std::max(0.0, backlog + kStepSweeps * growth);
+    // A frame waits for as many sweeps as the link needs for what is before it.
+    const double queued = 0.5 * (backlog + end) / sweep_bytes_;
     const double value =
-        quality - kQueueWeight * backlog / bytes - std::abs(quality - last_quality);
+        kStepSweeps * (quality - kQueueWeight * queued) - std::abs(quality - last_quality);
+    backlog = end;
     if (depth == 1) return value;
     double best = plan(0, backlog, quality, depth - 1);
     for (std::size_t next = 1; next < view_->level_bytes.size(); ++next) {

@@ -43,7 +43,7 @@ Result<std::vector<Stream>> compare_streams(std::span<const std::filesystem::pat
       strategies.push_back(nullptr);
       continue;
     }
-    auto strategy = make_strategy(name);
+    auto strategy = make_strategy(name, comparison.codec);
     if (!strategy) return tl::unexpected(strategy.error());
     strategies.push_back(std::move(*strategy));
   }

@@ -95,14 +95,14 @@ class Planner {
           with_model && option.setting != kSkip ? frames_.sizes[sweep][option.setting].model : 0;
       const auto bytes = static_cast<std::int64_t>(option.bytes + model);
       for (std::size_t k = 0; k < states.size(); ++k) {
-        State state{states[k].end, states[k].value, static_cast<std::uint32_t>(k),
+        State state{std::max(states[k].end, now), states[k].value, static_cast<std::uint32_t>(k),
                     static_cast<std::uint8_t>(level)};
         state.value += level_quality(level);
         if (index > 0) {
           state.value -= std::abs(level_quality(level) - level_quality(states[k].level));
         }
         if (bytes > 0) {
-          state.end = TraceLine::after(std::max(state.end, now), bytes);
+          state.end = TraceLine::after(state.end, bytes);
           state.value -= kQueueWeight * waits(index, line_.sent_us(state.end));
         }
         next.push_back(state);
