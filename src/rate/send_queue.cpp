@@ -13,9 +13,10 @@ void SendQueue::push(std::uint64_t frame, std::vector<std::size_t> layer_ends,
     waiting_.push_back(std::move(waiting));
     return;
   }
-  overtake();
   give_up(now_us);
-  waiting_.push_front(std::move(waiting));
+  const bool finishes_first = !waiting_.empty() && finishes_layer(waiting_.front(), now_us);
+  overtake(finishes_first);
+  waiting_.insert(waiting_.begin() + (finishes_first ? 1 : 0), std::move(waiting));
 }
 
 std::optional<Piece> SendQueue::next(std::int64_t now_us, std::size_t most_bytes) {
@@ -41,7 +42,13 @@ bool SendQueue::contains(std::uint64_t frame) const {
                      [frame](const Waiting& waiting) { return waiting.frame == frame; });
 }
 
-void SendQueue::overtake() {
+bool SendQueue::finishes_layer(const Waiting& waiting, std::int64_t now_us) {
+  return waiting.taken > 0 && waiting.taken < waiting.layer_ends.front() &&
+         now_us - waiting.since_us <= kFinishUs;
+}
+
+void SendQueue::overtake(bool finishes_first) {
+  if (finishes_first) waiting_.front().layer_ends.resize(1);
   std::erase_if(waiting_, [](Waiting& waiting) {
     auto& ends = waiting.layer_ends;
     if (waiting.taken >= ends.front()) return true;

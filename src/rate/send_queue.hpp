@@ -20,15 +20,19 @@ struct Piece {
 
 /// The frames that are not fully sent. `oldest_first` sends all of them whole, in order.
 ///
-/// `freshest_first` sends the newest frame first. What it overtakes is cut: a frame of which whole
-/// layers are sent ends with the last of these; one of which none is keeps its first layers, as
-/// many as `kLateLayers`, and they go when the newest is through, again the newest of them first.
-/// A frame is given up `kLateUs` after it was pushed, but for one whose sending has begun and which
-/// nothing overtook.
+/// `freshest_first` sends the newest frame first, its layers in order, and cuts what it overtakes:
+/// - A frame of which whole layers are taken ends with the last of these.
+/// - One that is in its first layer, and not older than `kFinishUs`, goes on to that layer's end
+///   before the newest begins: else, where a layer takes longer than the time between sweeps, none
+///   would ever be through.
+/// - Of others the first `kLateLayers` layers wait until nothing fresher is left to send, the
+/// newest
+///   of them first, and are given up `kLateUs` after they were pushed.
 class SendQueue {
  public:
-  static constexpr std::size_t kLateLayers = 5;
-  static constexpr std::int64_t kLateUs = 1'000'000;
+  static constexpr std::int64_t kFinishUs = 200'000;
+  static constexpr std::size_t kLateLayers = 3;
+  static constexpr std::int64_t kLateUs = 60'000'000;
 
   explicit SendQueue(SendOrder order) : order_(order) {}
 
@@ -51,7 +55,8 @@ class SendQueue {
     std::vector<std::size_t> layer_ends;
   };
 
-  void overtake();
+  static bool finishes_layer(const Waiting& waiting, std::int64_t now_us);
+  void overtake(bool finishes_first);
   void give_up(std::int64_t now_us);
 
   SendOrder order_;

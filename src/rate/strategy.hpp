@@ -19,6 +19,7 @@ namespace sweepcast {
 /// What a sender knows at the instant at which a sweep is to be encoded.
 struct LinkView {
   double period_s = 0.1;  ///< to the next sweep
+  double delay_s = 0.0;   ///< one way, from a packet's sending to its arrival, at worst as a rule
   /// Frames encoded before and not fully sent, those given up not among them.
   std::size_t queued_frames = 0;
   std::size_t queued_bytes = 0;  ///< of these, not yet sent

@@ -69,6 +69,7 @@ class Session {
     fate.queued_bytes = queued_bytes();
     LinkView view;
     view.period_s = 1.0 / options_.rate_hz;
+    view.delay_s = static_cast<double>(options_.link.delay_us + options_.link.jitter_us) * 1e-6;
     view.queued_frames = fate.queued_frames;
     view.queued_bytes = fate.queued_bytes;
     view.sent_bytes = std::exchange(sent_bytes_, 0);
