@@ -26,7 +26,7 @@ constexpr std::size_t kGrowth = 3;
 constexpr int kTrial = 100;
 /// What a failed attempt at a level multiplies the patience before the next one by, and the most.
 constexpr int kBackOff = 2;
-constexpr int kMostPatience = 40;
+constexpr int kMostPatience = 80;
 
 class Paper final : public Strategy {
  public:
