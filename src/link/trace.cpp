@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kFileCap = std::size_t{256} << 20;
 constexpr std::int64_t kLongestUs = 86'400'000'000;
-constexpr double kMostOpportunities = 1e8;
+constexpr double kMostOpportunities = 1e7;
 constexpr double kMostKilobytes = 1e6;  ///< a second
 
 tl::unexpected<Error> fail_at(ErrorCode code, std::size_t line, const std::string& what) {

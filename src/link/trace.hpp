@@ -33,7 +33,7 @@ struct Trace {
 /// Reads a schedule: lines of a time in seconds and the kilobytes (1000 bytes) a second from then
 /// on, the first at time 0; last the time of its end and the word "end". `#` begins a comment. An
 /// opportunity is where another 1500 bytes have come together.
-/// Errors: as of `parse_mahimahi`; limit also where a rate is over 1 GB/s or it is over 10^8
+/// Errors: as of `parse_mahimahi`; limit also where a rate is over 1 GB/s or it is over 10^7
 /// opportunities; truncated also without the line "end".
 [[nodiscard]] Result<Trace> parse_schedule(std::string_view text, std::string name);
 

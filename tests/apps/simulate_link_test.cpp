@@ -74,7 +74,7 @@ TEST_F(SimulateLinkTest, ErrorsNameWhatIsWrong) {
   EXPECT_EQ(damaged.exit_status, 1);
   EXPECT_NE(damaged.err.find("damaged.up: line 2"), std::string::npos);
   EXPECT_EQ(run("simulate-link --sweeps sweeps --loss 200").exit_status, 2);
-  EXPECT_EQ(run("simulate-link").exit_status, 0);  // its help
+  EXPECT_EQ(run("simulate-link --trace paper").exit_status, 2);
 }
 
 }  // namespace
