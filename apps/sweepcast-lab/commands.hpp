@@ -6,6 +6,7 @@
 namespace sweepcast::app {
 
 void add_simulate(CLI::App& app, Command& command);
+void add_simulate_link(CLI::App& app, Command& command);
 void add_bench(CLI::App& app, Command& command);
 void add_ablate(CLI::App& app, Command& command);
 

@@ -9,6 +9,7 @@ int main(int argc, char** argv) try {
   app.require_subcommand(1);
   sweepcast::app::Command command;
   sweepcast::app::add_simulate(app, command);
+  sweepcast::app::add_simulate_link(app, command);
   sweepcast::app::add_bench(app, command);
   sweepcast::app::add_ablate(app, command);
   return sweepcast::app::run(app, command, argc, argv);

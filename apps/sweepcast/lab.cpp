@@ -1,4 +1,5 @@
-// simulate, bench, ablate: `sweepcast-lab` has them, with the heavy libraries that they need.
+// simulate, simulate-link, bench, ablate: `sweepcast-lab` has them, with the heavy libraries that
+// they need.
 #include <fmt/core.h>
 #include <unistd.h>
 
@@ -22,8 +23,9 @@ struct LabCommand {
   const char* help;
 };
 
-constexpr std::array<LabCommand, 3> kLabCommands{{
+constexpr std::array<LabCommand, 4> kLabCommands{{
     {"simulate", "Drive a simulated sensor through a simulated town"},
+    {"simulate-link", "Stream sweeps over a recorded link in virtual time, by each strategy"},
     {"bench", "Measure ratio, distortion and time over settings, beside other codecs"},
     {"ablate", "Measure what each of the method's ideas is worth"},
 }};

@@ -1,0 +1,48 @@
+// BOLA: K. Spiteri, R. Urgaonkar, R. Sitaraman, "BOLA: near-optimal bitrate adaptation for online
+// videos", INFOCOM 2016. A player's buffer holds what is loaded and not yet shown, and empties
+// where the link is slow; a sender's queue fills there. So the buffer is the room that the queue
+// has left.
+#include <algorithm>
+#include <cmath>
+
+#include "rate/strategy.hpp"
+
+namespace sweepcast {
+namespace {
+
+/// Frames that the queue may hold: the size of the buffer.
+constexpr double kRoom = 10.0;
+/// gamma p of the BOLA paper: how much an empty queue is worth beside quality.
+constexpr double kGammaP = 5.0;
+
+class Bola final : public Strategy {
+ public:
+  Choice decide(const LinkView& view) override {
+    const double buffer = std::max(0.0, kRoom - static_cast<double>(view.queued_frames));
+    const auto smallest = static_cast<double>(view.level_bytes.back());
+    const auto utility = [&](std::size_t level) {
+      return std::log(static_cast<double>(view.level_bytes[level]) / smallest);
+    };
+    // The paper's choice of V: with one frame of room less than all, the finest level.
+    const double v = (kRoom - 1.0) / (utility(0) + kGammaP);
+    std::size_t best = kLevels - 1;
+    double best_score = 0.0;
+    for (std::size_t level = 0; level < view.level_bytes.size(); ++level) {
+      const double score =
+          (v * (utility(level) + kGammaP) - buffer) / static_cast<double>(view.level_bytes[level]);
+      if (level == 0 || score > best_score) {
+        best = level;
+        best_score = score;
+      }
+    }
+    return {.level = best};
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Strategy> make_bola() {
+  return std::make_unique<Bola>();
+}
+
+}  // namespace sweepcast

@@ -1,0 +1,11 @@
+# Tests of the link in virtual time, of the bitrate strategies, and of streams.
+sweepcast_test(link/trace sweepcast_link_model)
+sweepcast_test(link/link_model sweepcast_link_model)
+sweepcast_test(rate/qoe)
+sweepcast_test(rate/send_queue)
+sweepcast_test(rate/strategy)
+sweepcast_test(lab/stream/session sweepcast_stream)
+sweepcast_test(lab/stream/offline sweepcast_stream)
+if(SWEEPCAST_APPS)
+  sweepcast_test(apps/simulate_link tool_fixture)
+endif()
