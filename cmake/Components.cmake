@@ -25,6 +25,13 @@ function(sweepcast_component name found package what)
   endif()
 endfunction()
 
+pkg_check_modules(srt QUIET IMPORTED_TARGET GLOBAL srt>=1.5)
+pkg_check_modules(libsodium QUIET IMPORTED_TARGET GLOBAL libsodium)
+if(srt_FOUND AND libsodium_FOUND)
+  set(link_found ON)
+endif()
+sweepcast_component(link "${link_found}" "libsrt-openssl-dev libsodium-dev" "the live link")
+
 if(SWEEPCAST_APPS OR SWEEPCAST_TESTS)
   find_package(CLI11 REQUIRED)
   find_package(fmt REQUIRED)
