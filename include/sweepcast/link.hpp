@@ -79,6 +79,8 @@ struct OutgoingSweep {
   std::string_view sensor;  ///< see `is_link_name`; at most 16 sensors a sender
   std::string_view name;    ///< of its source, at most 64 bytes; may be empty
   std::chrono::steady_clock::time_point captured;  ///< when its last point was measured
+  /// Layers that end beyond so many bytes are left out, but for the first; 0: none are.
+  std::size_t most_bytes = 0;
 };
 
 /// Counters since the start, and how things are now.

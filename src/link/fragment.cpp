@@ -69,7 +69,8 @@ std::optional<SweepLabel> read_label(std::span<const std::byte> bytes,
 }
 
 Result<std::vector<std::vector<std::byte>>> cut_layers(std::span<const std::byte> frame,
-                                                       const SweepLabel& label) {
+                                                       const SweepLabel& label,
+                                                       std::size_t most_bytes) {
   FrameHeader header;
   if (Status status = parse_frame_header(frame, header); !status) {
     return tl::unexpected(status.error());
@@ -82,6 +83,7 @@ Result<std::vector<std::vector<std::byte>>> cut_layers(std::span<const std::byte
   std::vector<std::vector<std::byte>> layers;
   std::size_t begin = 0;
   for (const std::size_t end : ends) {
+    if (!layers.empty() && most_bytes > 0 && end > most_bytes) break;
     std::vector<std::byte>& layer = layers.emplace_back();
     if (layers.size() == 1) write_label(label, layer);
     const auto bytes = frame.subspan(begin, end - begin);

@@ -71,9 +71,10 @@ void write_label(const SweepLabel& label, std::vector<std::byte>& out);
 inline constexpr std::size_t kMostSourceName = 64;
 
 /// Cuts a frame into the layers to send; the first one begins with the label. A frame of more than
-/// kMostLayers keeps the rest in the last.
+/// kMostLayers keeps the rest in the last. Of the layers after the first, those that end beyond
+/// `most_bytes` of the frame are left out, unless it is 0.
 /// Errors: those of `parse_frame_header`; truncated; limit (a layer over kLargestLayer).
 [[nodiscard]] Result<std::vector<std::vector<std::byte>>> cut_layers(
-    std::span<const std::byte> frame, const SweepLabel& label);
+    std::span<const std::byte> frame, const SweepLabel& label, std::size_t most_bytes = 0);
 
 }  // namespace sweepcast::link

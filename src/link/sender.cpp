@@ -319,7 +319,7 @@ Status Sender::send(const OutgoingSweep& sweep) {
   if (Status done = state.prepare_frame(state.streams[*number], frame, label.model); !done) {
     return done;
   }
-  auto layers = cut_layers(frame, label);
+  auto layers = cut_layers(frame, label, sweep.most_bytes);
   if (!layers) return tl::unexpected(layers.error());
   ++state.status.sweeps;
   const Microseconds deadline = captured + microseconds(state.options.deadline).count();

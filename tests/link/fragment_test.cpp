@@ -127,6 +127,11 @@ TEST(CutLayers, TogetherTheyAreLabelAndFrame) {
   Bytes joined;
   for (const Bytes& layer : *layers) joined.insert(joined.end(), layer.begin(), layer.end());
   EXPECT_EQ(joined, expected);
+  const std::size_t label_bytes = expected.size() - frame.size();
+  const std::size_t two = (*layers)[0].size() + (*layers)[1].size() - label_bytes;
+  EXPECT_EQ(cut_layers(frame, label, two)->size(), 2U);
+  EXPECT_EQ(cut_layers(frame, label, two - 1)->size(), 1U);
+  EXPECT_EQ(cut_layers(frame, label, 1)->size(), 1U);
   const auto cut = cut_layers(std::span(frame).first(frame.size() - 1), label);
   ASSERT_FALSE(cut);
   EXPECT_EQ(cut.error().code, ErrorCode::truncated);
