@@ -157,7 +157,7 @@ void Receiver::State::accept_all() {
     auto peer = std::make_unique<Peer>(*key, options.most_bytes_per_peer, memory, now_us());
     const SRTSOCKET number = socket.get();
     const bool greeted =
-        srt_send_packet(number, write_hello(peer->challenge()), SRT_MSGTTL_INF) == SrtOutcome::done;
+        srt_send_packet(number, write_hello(peer->challenge())) == SrtOutcome::done;
     connections[number] = {std::move(socket), std::move(peer), !greeted};
     const std::scoped_lock lock(mutex);
     ++open[key->robot];
@@ -185,10 +185,11 @@ void Receiver::State::receive_from(Connection& connection) {
 void Receiver::State::tend(Microseconds now) {
   for (auto& [number, connection] : connections) {
     Peer& peer = *connection.peer;
+    receive_from(connection);  // SRT tells of no event where a packet fills a gap
     peer.expire(now);
     deliver(peer);
     if (const auto report = peer.report(now); !report.empty()) {
-      if (srt_send_packet(number, report, 500) == SrtOutcome::broken) connection.broken = true;
+      if (srt_send_packet(number, report) == SrtOutcome::broken) connection.broken = true;
     }
     if (!peer.is_authentic() && now - peer.began() > kAuthentication) connection.broken = true;
   }

@@ -25,6 +25,8 @@ using std::chrono::steady_clock;
 constexpr Microseconds kReportTimeout = 1'500'000;  // then the receiver counts as gone
 constexpr Microseconds kBurst = 5'000;              // what pacing may catch up with
 constexpr std::size_t kWireHead = 44;               // SRT, UDP and IPv4 heads of a packet
+constexpr double kUnderWay_s = 0.15;   // of packets at the budget's pace, and a round trip
+constexpr double kLeastUnderWay = 16;  // packets
 constexpr int kReceiveTimeout_ms = 50;
 constexpr milliseconds kRetry{100};
 constexpr milliseconds kBufferFull{2};
@@ -109,7 +111,7 @@ std::string Sender::State::converse(const SrtSocket& socket) {
   const SRTSOCKET s = socket.get();
   const Challenge ours = draw_challenge();
   if (!set_option(s, SRTO_RCVTIMEO, kReceiveTimeout_ms) ||
-      srt_send_packet(s, write_hello(ours), SRT_MSGTTL_INF) != SrtOutcome::done) {
+      srt_send_packet(s, write_hello(ours)) != SrtOutcome::done) {
     return "the connection ended as it began";
   }
   std::optional<PacketOpener> opener;
@@ -216,14 +218,22 @@ void Sender::State::run_pacer() {
 Microseconds Sender::State::send_next(Microseconds now, Microseconds due) {
   const auto fragment = queue.peek(now);
   if (!fragment) return due;
+  // What is under way cannot be taken back: as little as fills the link, so that after an outage
+  // fresh sweeps need not wait for stale packets.
+  const double rate = std::max(1e3, status.budget.bytes_per_second);
+  const double fills = rate * (kUnderWay_s + std::min(status.link.round_trip_s, kUnderWay_s)) /
+                       static_cast<double>(kMostPacketBytes);
+  const auto under_way = static_cast<double>(packets_under_way(session->socket));
+  if (under_way > std::max(kLeastUnderWay, fills)) {
+    return now + microseconds(kBufferFull).count();
+  }
   write_fragment(*fragment, plain);
   const auto packet = session->sealer.seal(PacketType::fragment, plain);
-  const SrtOutcome outcome = srt_send_packet(session->socket, packet, fragment->remaining_ms);
+  const SrtOutcome outcome = srt_send_packet(session->socket, packet);
   if (outcome != SrtOutcome::done) return now + microseconds(kBufferFull).count();
   queue.pop();
   ++status.packets;
   status.bytes += packet.size();
-  const double rate = std::max(1e3, status.budget.bytes_per_second);
   const double time = static_cast<double>(packet.size() + kWireHead) * 1e6 / rate;
   return std::max(due, now - kBurst) + static_cast<Microseconds>(time);
 }
@@ -349,10 +359,8 @@ void Sender::finish() {
   const auto end = steady_clock::now() + state_->options.deadline;
   std::unique_lock lock(state_->mutex);
   while (steady_clock::now() < end) {
-    std::size_t blocks = 0;
-    std::size_t bytes = 0;
-    if (state_->session) (void)srt_getsndbuffer(state_->session->socket, &blocks, &bytes);
-    if (state_->queue.empty() && blocks == 0) return;
+    const bool has_arrived = !state_->session || packets_under_way(state_->session->socket) == 0;
+    if (state_->queue.empty() && has_arrived) return;
     state_->wake.wait_for(lock, kCheck);
   }
 }

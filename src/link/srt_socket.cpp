@@ -44,10 +44,12 @@ bool set_option(SRTSOCKET socket, SRT_SOCKOPT option, const std::string& value) 
 
 Result<SrtSocket> make_srt_socket() {
   SrtSocket socket(srt_create_socket());
+  // No periodic loss reports: with them SRT leaves the last packet of a burst lost until others
+  // follow; without them it repeats by time what nobody acknowledges.
   const SRTSOCKET s = socket.get();
   const bool sound = s != SRT_INVALID_SOCK && set_option(s, SRTO_TRANSTYPE, SRTT_LIVE) &&
                      set_option(s, SRTO_TSBPDMODE, false) && set_option(s, SRTO_TLPKTDROP, false) &&
-                     set_option(s, SRTO_NAKREPORT, true) && set_option(s, SRTO_LATENCY, 0) &&
+                     set_option(s, SRTO_NAKREPORT, false) && set_option(s, SRTO_LATENCY, 0) &&
                      set_option(s, SRTO_PAYLOADSIZE, static_cast<int>(kMostPacketBytes)) &&
                      set_option(s, SRTO_MAXBW, std::int64_t{-1}) &&
                      set_option(s, SRTO_LOSSMAXTTL, kReorderTolerance) &&
@@ -64,15 +66,20 @@ Result<SrtSocket> make_srt_socket() {
                   "); it must be version 1.5 with encryption, as libsrt1.5-openssl is");
 }
 
-SrtOutcome srt_send_packet(SRTSOCKET socket, std::span<const std::byte> packet, int ttl_ms) {
+SrtOutcome srt_send_packet(SRTSOCKET socket, std::span<const std::byte> packet) {
   SRT_MSGCTRL control = srt_msgctrl_default;
-  control.msgttl = ttl_ms;
   control.inorder = 0;  // a packet that comes late must not hold up the others
   if (srt_sendmsg2(socket, reinterpret_cast<const char*>(packet.data()),
                    static_cast<int>(packet.size()), &control) >= 0) {
     return SrtOutcome::done;
   }
   return srt_getlasterror(nullptr) == SRT_EASYNCSND ? SrtOutcome::not_now : SrtOutcome::broken;
+}
+
+std::size_t packets_under_way(SRTSOCKET socket) {
+  std::size_t packets = 0;
+  std::size_t bytes = 0;
+  return srt_getsndbuffer(socket, &packets, &bytes) < 0 ? 0 : packets;
 }
 
 SrtOutcome srt_receive_packet(SRTSOCKET socket, std::span<std::byte> buffer,

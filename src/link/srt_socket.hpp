@@ -61,9 +61,12 @@ template <class T>
 /// What an attempt to send or receive came to.
 enum class SrtOutcome : std::uint8_t { done, not_now, broken };
 
-/// Hands a packet to SRT, which drops it where it has not arrived after `ttl_ms`.
-[[nodiscard]] SrtOutcome srt_send_packet(SRTSOCKET socket, std::span<const std::byte> packet,
-                                         int ttl_ms);
+/// Hands a packet to SRT, which repeats it until it has arrived. Without a time to live: SRT 1.5.1
+/// loses count of its packets where it drops one that waits to be repeated, and stands still. So
+/// keep what is under way small: `packets_under_way`.
+[[nodiscard]] SrtOutcome srt_send_packet(SRTSOCKET socket, std::span<const std::byte> packet);
+/// Packets that were handed to SRT and are not known to have arrived.
+[[nodiscard]] std::size_t packets_under_way(SRTSOCKET socket);
 /// Receives a packet into `buffer`; `packet` is what came.
 [[nodiscard]] SrtOutcome srt_receive_packet(SRTSOCKET socket, std::span<std::byte> buffer,
                                             std::span<const std::byte>& packet);
