@@ -28,6 +28,7 @@ constexpr std::size_t kWireHead = 44;               // SRT, UDP and IPv4 heads o
 constexpr double kUnderWay_s = 0.15;   // of packets at the budget's pace, and a round trip
 constexpr double kLeastUnderWay = 16;  // packets
 constexpr int kReceiveTimeout_ms = 50;
+constexpr microseconds kShortestSleep{4'000};  // several packets a wake-up: waking costs more
 constexpr milliseconds kRetry{100};
 constexpr milliseconds kBufferFull{2};
 constexpr milliseconds kExpiryCheck{20};
@@ -204,7 +205,7 @@ void Sender::State::run_pacer() {
     }
     const Microseconds now = now_us();
     if (now < due) {
-      wake.wait_for(lock, microseconds(due - now));
+      wake.wait_for(lock, std::max(microseconds(due - now), kShortestSleep));
     } else if (!session) {
       (void)queue.peek(now);  // what waits ends at its deadline all the same
       wake.wait_for(lock, kExpiryCheck);
