@@ -6,12 +6,16 @@
 include(CMakePackageConfigHelpers)
 
 # Before 1.0 every minor version may change the binary interface.
-set_target_properties(sweepcast sweepcast_io PROPERTIES
+set(libraries sweepcast sweepcast_io)
+if(SWEEPCAST_WITH_LINK)
+  list(APPEND libraries sweepcast_link)
+endif()
+set_target_properties(${libraries} PROPERTIES
   VERSION ${PROJECT_VERSION}
   SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
   INSTALL_RPATH $ORIGIN)
 
-install(TARGETS sweepcast sweepcast_io EXPORT sweepcast-targets
+install(TARGETS ${libraries} EXPORT sweepcast-targets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime NAMELINK_COMPONENT development
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/sweepcast

@@ -14,6 +14,10 @@ void add_info(CLI::App& app, Command& command);
 void add_verify(CLI::App& app, Command& command);
 void add_compare(CLI::App& app, Command& command);
 void add_calibrate(CLI::App& app, Command& command);
+void add_keygen(CLI::App& app, Command& command);
+void add_send(CLI::App& app, Command& command);
+void add_receive(CLI::App& app, Command& command);
+void add_emulate_link(CLI::App& app, Command& command);
 
 /// Lists simulate, bench and ablate in the help; `run_lab` runs them.
 void add_lab(CLI::App& app);

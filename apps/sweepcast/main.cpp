@@ -29,6 +29,10 @@ int run_tool(int argc, char** argv) {
   add_verify(app, command);
   add_compare(app, command);
   add_calibrate(app, command);
+  add_keygen(app, command);
+  add_send(app, command);
+  add_receive(app, command);
+  add_emulate_link(app, command);
   add_lab(app);
   return run(app, command, argc, argv);
 }

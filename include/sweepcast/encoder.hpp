@@ -130,6 +130,10 @@ class Encoder {
   [[nodiscard]] Result<std::span<const std::byte>> encode(const CloudView& cloud,
                                                           const SweepInfo& info);
 
+  /// Changes `BeamOptions::target_bytes`, above 0, from the next sweep on.
+  /// Error: invalid_argument (0; another codec; an encoder that was made without a target).
+  [[nodiscard]] Status set_target_bytes(std::size_t bytes);
+
   /// Where the points of the last encoded sweep went.
   [[nodiscard]] const SweepCounts& last_counts() const noexcept;
 

@@ -78,6 +78,11 @@ Result<std::span<const std::byte>> Encoder::encode(const CloudView& cloud, const
   return s.frame;
 }
 
+Status Encoder::set_target_bytes(std::size_t bytes) {
+  if (state_->codec == CodecId::beam) return state_->beam.set_target_bytes(bytes);
+  return fail(ErrorCode::invalid_argument, "only codec beam can be given a number of bytes");
+}
+
 const SweepCounts& Encoder::last_counts() const noexcept {
   return state_->counts;
 }

@@ -18,6 +18,9 @@ class ByteBudget {
  public:
   explicit ByteBudget(std::size_t bytes) : target_(static_cast<double>(bytes)) {}
 
+  /// Changes the budget, from the next sweep on.
+  void set_bytes(std::size_t bytes) { target_ = static_cast<double>(bytes); }
+
   /// Begins a sweep. Returns the first level to try.
   [[nodiscard]] double begin();
 

@@ -50,6 +50,9 @@ class Encoder {
   /// Options must have passed `check`.
   Encoder(const BeamOptions& options, const Crop& crop);
 
+  /// See `sweepcast::Encoder`.
+  [[nodiscard]] Status set_target_bytes(std::size_t bytes);
+
   /// Fills `parts` and `counts`. Unless thinned, every finite point with a range decodes within the
   /// error bound. Error: limit (the sweep does not fit the bytes that options allow).
   [[nodiscard]] Status encode(const CloudView& cloud, const SweepInfo& info, PartList& parts,

@@ -219,7 +219,9 @@ Status Decoder::read_layers(std::span<const std::byte> frame, const FrameHeader&
   for (int layer = 0; layer < layers; ++layer) {
     const auto bytes = checked_part(
         frame, header, static_cast<std::uint8_t>(static_cast<int>(Part::layer) + layer));
-    if (!bytes && bytes.error().code == ErrorCode::truncated && layer > 0) {
+    const bool is_absent =
+        !has_part(header, static_cast<std::uint8_t>(static_cast<int>(Part::layer) + layer));
+    if (!bytes && layer > 0 && (is_absent || bytes.error().code == ErrorCode::truncated)) {
       complete_ = false;
       break;
     }

@@ -90,6 +90,17 @@ Encoder::Encoder(const BeamOptions& options, const Crop& crop)
   if (options_.target_bytes > 0) budget_.emplace(options_.target_bytes);
 }
 
+Status Encoder::set_target_bytes(std::size_t bytes) {
+  if (!budget_ || bytes == 0) {
+    return fail(ErrorCode::invalid_argument,
+                "the encoder was not made for a target, or the target is 0 bytes; set "
+                "BeamOptions::target_bytes above 0 when making it");
+  }
+  options_.target_bytes = bytes;
+  budget_->set_bytes(bytes);
+  return {};
+}
+
 // One sweep's way: sensor model, range image, layers of ranges; what has no cell goes aside.
 Status Encoder::encode(const CloudView& cloud, const SweepInfo& info, PartList& parts,
                        SweepCounts& counts) {

@@ -1,0 +1,187 @@
+// `sweepcast receive`: sweeps from robots, live.
+#include <fmt/core.h>
+
+#include <memory>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "common/interruption.hpp"
+#include "sweepcast/commands.hpp"
+#include "sweepcast/link.hpp"
+#include "sweepcast/live/metrics.hpp"
+#include "sweepcast/live/sweep_store.hpp"
+
+namespace sweepcast::app {
+namespace {
+
+struct ReceiveOptions {
+  ReceiverOptions receiver;
+  std::string keys_file;
+  std::string output;
+  std::string metrics;
+  bool json = false;
+};
+
+/// Takes sweeps from the receiver's thread, and is asked from others.
+class Arrivals {
+ public:
+  explicit Arrivals(SweepStore store) : store_(std::move(store)) {}
+
+  void take(const ReceivedSweep& sweep) {
+    const std::scoped_lock lock(mutex_);
+    bytes_ += sweep.frame.size();
+    last_ = fmt::format("{}/{}", sweep.robot, sweep.sensor);
+    Status added = store_.add(sweep);
+    if (added) {
+      failing_ = false;
+      ++written_;
+      return;
+    }
+    ++lost_;
+    if (!failing_) print_error(added.error().message + "; receiving goes on");
+    failing_ = true;
+  }
+
+  [[nodiscard]] Status close() {
+    const std::scoped_lock lock(mutex_);
+    Status closed = store_.close();
+    if (!closed || lost_ == 0) return closed;
+    return fail(ErrorCode::io, fmt::format("{} of {} sweeps could not be written; those that were "
+                                           "are whole",
+                                           lost_, lost_ + written_));
+  }
+
+  struct Figures {
+    std::uint64_t written = 0, lost = 0, bytes = 0;
+    std::string last;
+  };
+  [[nodiscard]] Figures figures() const {
+    const std::scoped_lock lock(mutex_);
+    return {written_, lost_, bytes_, last_};
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  SweepStore store_;
+  std::uint64_t written_ = 0, lost_ = 0, bytes_ = 0;
+  std::string last_;
+  bool failing_ = false;
+};
+
+std::vector<Metric> metrics_of(const ReceiverStatus& s, const Arrivals::Figures& f) {
+  const auto number = [](auto value) { return static_cast<double>(value); };
+  return {
+      {"sweepcast_peers", "Robots that are connected", number(s.peers)},
+      {"sweepcast_connections_total", "Connections made", number(s.connections)},
+      {"sweepcast_connections_refused_total", "Attempts without a right key",
+       number(s.connections_refused)},
+      {"sweepcast_sweeps_whole_total", "Sweeps with all their layers", number(s.sweeps_whole)},
+      {"sweepcast_sweeps_cut_total", "Sweeps with fewer", number(s.sweeps_cut)},
+      {"sweepcast_sweeps_missed_total", "Sweeps with none", number(s.sweeps_missed)},
+      {"sweepcast_sweeps_written_total", "Sweeps written", number(f.written)},
+      {"sweepcast_sweeps_unwritten_total", "Sweeps that could not be", number(f.lost)},
+      {"sweepcast_frame_bytes_total", "Bytes of frames delivered", number(f.bytes)},
+      {"sweepcast_packets_total", "Authentic packets", number(s.packets)},
+      {"sweepcast_bytes_total", "Bytes of them", number(s.bytes)},
+      {"sweepcast_packets_forged_total", "Packets without the key", number(s.packets_forged)},
+      {"sweepcast_packets_replayed_total", "Packets seen before", number(s.packets_replayed)},
+      {"sweepcast_packets_malformed_total", "Packets of no sense", number(s.packets_malformed)},
+      {"sweepcast_packets_late_total", "Packets of sweeps that were over", number(s.packets_late)},
+      {"sweepcast_packets_over_limit_total", "Packets that memory had no room for",
+       number(s.packets_over_limit)},
+      {"sweepcast_buffered_bytes", "Bytes of sweeps not yet whole", number(s.buffered_bytes)},
+      {"sweepcast_age_seconds", "Age of the newest sweep when it was delivered", s.newest_age_s},
+  };
+}
+
+void report(const ReceiverStatus& s, const Arrivals::Figures& f, bool json) {
+  if (json) {
+    nlohmann::ordered_json out;
+    for (const Metric& metric : metrics_of(s, f)) {
+      constexpr std::size_t kPrefix = sizeof("sweepcast_") - 1;
+      out[metric.name.substr(kPrefix)] = metric.value;
+    }
+    print_json(out);
+    return;
+  }
+  fmt::print(stderr, "{} sweeps whole, {} cut, {} missed; {} bytes\n", s.sweeps_whole, s.sweeps_cut,
+             s.sweeps_missed, f.bytes);
+}
+
+Status receive(ReceiveOptions& options) {
+  auto keys = read_link_keys(options.keys_file);
+  if (!keys) return tl::unexpected(keys.error());
+  options.receiver.keys = std::move(*keys);
+  auto store = SweepStore::open(options.output);
+  if (!store) return tl::unexpected(store.error());
+  Arrivals arrivals(std::move(*store));
+  options.receiver.on_sweep = [&](const ReceivedSweep& sweep) { arrivals.take(sweep); };
+  auto started = Receiver::start(options.receiver);
+  if (!started) return tl::unexpected(started.error());
+  std::optional<Receiver> receiver = std::move(*started);
+  std::optional<MetricsServer> server;
+  if (!options.metrics.empty()) {
+    auto serving = MetricsServer::start(metrics_address(options.metrics), [&] {
+      return metrics_of(receiver->status(), arrivals.figures());
+    });
+    if (!serving) return tl::unexpected(serving.error());
+    server = std::move(*serving);
+  }
+  stop_on_signals();
+  print_note(fmt::format("listening at {}:{}", options.receiver.address, receiver->port()));
+  constexpr std::chrono::milliseconds kInterval{500};
+  {
+    StatusLine line;
+    while (!wait_for_stop(std::chrono::steady_clock::now() + kInterval)) {
+      line.update([&] {
+        const ReceiverStatus s = receiver->status();
+        return fmt::format("{} robots, {} sweeps whole, {} cut, {} missed, age {:.0f} ms  {}",
+                           s.peers, s.sweeps_whole, s.sweeps_cut, s.sweeps_missed,
+                           s.newest_age_s * 1e3, arrivals.figures().last);
+      });
+    }
+  }
+  server.reset();
+  const ReceiverStatus last = receiver->status();
+  receiver.reset();
+  report(last, arrivals.figures(), options.json && options.output != "-");
+  return arrivals.close();
+}
+
+}  // namespace
+
+void add_receive(CLI::App& app, Command& command) {
+  auto options = std::make_shared<ReceiveOptions>();
+  CLI::App* sub = app.add_subcommand("receive", "Receive sweeps from robots");
+  sub->add_option_function<std::string>(
+         "--listen",
+         [options](const std::string& text) {
+           const std::size_t colon = text.rfind(':');
+           const std::string digits = colon == std::string::npos ? text : text.substr(colon + 1);
+           const bool sound = !digits.empty() && digits.size() <= 5 &&
+                              digits.find_first_not_of("0123456789") == std::string::npos &&
+                              std::stoi(digits) <= 65535;
+           if (!sound) throw CLI::ValidationError("--listen", text + " is not [ADDRESS:]PORT");
+           options->receiver.port = static_cast<std::uint16_t>(std::stoi(digits));
+           if (colon != std::string::npos) options->receiver.address = text.substr(0, colon);
+         },
+         "Where robots find us [127.0.0.1:PORT]; 0.0.0.0:PORT is every interface")
+      ->type_name("[ADDRESS:]PORT")
+      ->required();
+  sub->add_option("--keys", options->keys_file, "The robots' keys, see keygen")
+      ->type_name("FILE")
+      ->required();
+  sub->add_option("-o,--output", options->output,
+                  "A .sweep file, a folder for robot/sensor.sweep, or - for standard output")
+      ->type_name("OUT.sweep|DIR|-")
+      ->required();
+  sub->add_option("--metrics", options->metrics, "Serve Prometheus text at /metrics")
+      ->type_name("[HOST:]PORT");
+  sub->add_flag("--json", options->json, "Print the outcome as JSON; not with -o -");
+  sub->footer("Example: sweepcast receive --listen 0.0.0.0:5600 --keys robots.keys -o received");
+  sub->callback([options, &command] { command = [options] { return receive(*options); }; });
+}
+
+}  // namespace sweepcast::app

@@ -1,0 +1,372 @@
+// `sweepcast send`: sweeps to a receiver, live.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/interruption.hpp"
+#include "common/validators.hpp"
+#include "sweepcast/commands.hpp"
+#include "sweepcast/encoder.hpp"
+#include "sweepcast/link.hpp"
+#include "sweepcast/live/metrics.hpp"
+#include "sweepcast/live/sweep_source.hpp"
+#include "sweepcast/sweep_file.hpp"
+
+namespace sweepcast::app {
+namespace {
+
+using std::chrono::steady_clock;
+
+struct SendOptions {
+  std::vector<std::string> inputs;
+  std::vector<std::string> sensors;
+  std::string to;
+  std::string key_file;
+  std::string record;
+  std::string metrics;
+  std::string strategy = "budget";
+  EncoderOptions encoder;
+  double rate_hz = 10.0;
+  int deadline_ms = 250;
+  bool loop = false;
+  bool json = false;
+};
+
+/// A sensor: where its sweeps come from, and how they are encoded.
+struct Feed {
+  std::string sensor;
+  std::unique_ptr<SweepSource> source;
+  std::optional<Encoder> encoder;   ///< of what is sent
+  std::optional<Encoder> recorder;  ///< of what is kept, at full quality
+  SourceSweep sweep;
+  std::uint64_t sequence = 0;
+  std::size_t least_bytes = 0;  ///< what sweeps took lately at their coarsest
+};
+
+/// Level of "fixed:L"; none for "budget".
+std::optional<int> fixed_level(const std::string& strategy) {
+  if (strategy == "budget") return std::nullopt;
+  return strategy.back() - '0';
+}
+
+std::string check_strategy(const std::string& text) {
+  const bool is_fixed =
+      text.size() == 7 && text.rfind("fixed:", 0) == 0 && text.back() >= '0' && text.back() <= '5';
+  return text == "budget" || is_fixed ? "" : "\"" + text + "\" is not budget or fixed:0..5";
+}
+
+Result<std::pair<std::string, std::uint16_t>> parse_address(const std::string& text) {
+  const std::size_t colon = text.rfind(':');
+  const std::string digits = colon == std::string::npos ? "" : text.substr(colon + 1);
+  const bool is_number = !digits.empty() && digits.size() <= 5 &&
+                         digits.find_first_not_of("0123456789") == std::string::npos;
+  const int port = is_number ? std::stoi(digits) : 0;
+  if (colon == 0 || port < 1 || port > 65535) {
+    return fail(ErrorCode::invalid_argument, text + ": is not HOST:PORT, as in 192.168.1.5:5600");
+  }
+  return std::pair(text.substr(0, colon), static_cast<std::uint16_t>(port));
+}
+
+Result<std::vector<Feed>> open_feeds(const SendOptions& options) {
+  std::vector<Feed> feeds;
+  for (std::size_t i = 0; i < options.inputs.size(); ++i) {
+    Feed& feed = feeds.emplace_back();
+    feed.sensor = i < options.sensors.size() ? options.sensors[i] : "lidar";
+    auto source = open_source(options.inputs[i]);
+    if (!source) return tl::unexpected(source.error());
+    feed.source = std::move(*source);
+    if (!feed.source->gives_clouds()) continue;
+    EncoderOptions live = options.encoder;
+    if (const auto level = fixed_level(options.strategy)) {
+      live.beam.level = level;
+      live.rcpcc.params = kRcpccLevels.at(static_cast<std::size_t>(*level));
+    } else {
+      live.beam.target_bytes = LinkBudget{}.sweep_bytes;
+    }
+    auto encoder = Encoder::create(live);
+    if (!encoder) return tl::unexpected(encoder.error());
+    feed.encoder = std::move(*encoder);
+    if (options.record.empty()) continue;
+    auto recorder = Encoder::create({});
+    if (!recorder) return tl::unexpected(recorder.error());
+    feed.recorder = std::move(*recorder);
+  }
+  return feeds;
+}
+
+class Sending {
+ public:
+  Sending(const SendOptions& options, std::vector<Feed> feeds, Sender sender)
+      : options_(options), feeds_(std::move(feeds)), sender_(std::move(sender)) {}
+
+  Status run();
+
+ private:
+  [[nodiscard]] Result<bool> read(Feed& feed);
+  [[nodiscard]] Result<std::span<const std::byte>> encode(Feed& feed, std::size_t bytes);
+  [[nodiscard]] Status keep(Feed& feed);
+  [[nodiscard]] Status send(Feed& feed, steady_clock::time_point captured);
+  [[nodiscard]] Status send_all();
+  [[nodiscard]] std::vector<Metric> metrics() const;
+  [[nodiscard]] std::string line() const;
+  void report() const;
+
+  const SendOptions& options_;
+  std::vector<Feed> feeds_;
+  Sender sender_;
+  std::optional<SweepWriter> record_;
+};
+
+Result<bool> Sending::read(Feed& feed) {
+  auto there = feed.source->next(feed.sweep);
+  if (there && !*there && options_.loop && !stop_requested() && feed.source->rewind()) {
+    there = feed.source->next(feed.sweep);
+  }
+  return there;
+}
+
+/// Encodes the sweep; one that does not fit its budget even at its coarsest is allowed more, of
+/// which the link then takes the layers that it can carry.
+Result<std::span<const std::byte>> Sending::encode(Feed& feed, std::size_t bytes) {
+  const auto stamp = static_cast<double>(feed.sequence) * 1e9 / options_.rate_hz;
+  const SweepInfo info{feed.sequence, static_cast<std::int64_t>(stamp), feed.sensor};
+  if (fixed_level(options_.strategy)) return feed.encoder->encode(feed.sweep.cloud, info);
+  for (std::size_t target = std::max({bytes, feed.least_bytes, std::size_t{1}});; target *= 2) {
+    if (Status set = feed.encoder->set_target_bytes(target); !set) {
+      return tl::unexpected(set.error());
+    }
+    auto frame = feed.encoder->encode(feed.sweep.cloud, info);
+    if (frame || frame.error().code != ErrorCode::limit || target > (std::size_t{1} << 24)) {
+      feed.least_bytes = target > bytes ? target - target / 10 : 0;
+      return frame;
+    }
+  }
+}
+
+/// Adds the sweep to the recording.
+Status Sending::keep(Feed& feed) {
+  if (!record_) return {};
+  std::span<const std::byte> frame = feed.sweep.frame;
+  if (feed.recorder) {
+    const auto stamp = static_cast<double>(feed.sequence) * 1e9 / options_.rate_hz;
+    auto encoded = feed.recorder->encode(
+        feed.sweep.cloud, {feed.sequence, static_cast<std::int64_t>(stamp), feed.sensor});
+    if (!encoded) return tl::unexpected(encoded.error());
+    frame = *encoded;
+  }
+  return record_->append(frame, feed.sweep.name);
+}
+
+Status Sending::send(Feed& feed, steady_clock::time_point captured) {
+  const std::size_t bytes = sender_.budget().sweep_bytes / feeds_.size();
+  OutgoingSweep out;
+  out.sensor = feed.sensor;
+  out.name = std::string_view(feed.sweep.name).substr(0, 64);
+  out.captured = captured;
+  out.frame = feed.sweep.frame;
+  out.most_bytes = bytes;
+  if (feed.encoder) {
+    const auto frame = encode(feed, bytes);
+    if (!frame) {
+      return fail(frame.error().code, feed.sweep.name + ": " + frame.error().message);
+    }
+    out.frame = *frame;
+    out.most_bytes = std::max(bytes, feed.least_bytes);
+    if (fixed_level(options_.strategy)) out.most_bytes = 0;
+  }
+  return sender_.send(out);
+}
+
+Status Sending::send_all() {
+  const auto interval = std::chrono::duration_cast<steady_clock::duration>(
+      std::chrono::duration<double>(1.0 / options_.rate_hz));
+  StatusLine line;
+  // Sweeps that take longer than the interval are not skipped: the rest comes later.
+  for (auto due = steady_clock::now();; due = std::max(due + interval, steady_clock::now())) {
+    if (wait_for_stop(due)) return {};
+    bool any = false;
+    for (Feed& feed : feeds_) {
+      const auto there = read(feed);
+      if (!there) return tl::unexpected(there.error());
+      if (!*there) continue;
+      any = true;
+      if (Status sent = send(feed, due); !sent) return sent;
+      if (Status kept = keep(feed); !kept) return kept;
+      ++feed.sequence;
+    }
+    if (!any) return {};
+    line.update([&] { return this->line(); });
+  }
+}
+
+Status Sending::run() {
+  if (!options_.record.empty()) {
+    auto writer = SweepWriter::open(options_.record, SweepWriter::Mode::record);
+    if (!writer) return tl::unexpected(writer.error());
+    record_ = std::move(*writer);
+  }
+  std::optional<MetricsServer> server;
+  if (!options_.metrics.empty()) {
+    auto started =
+        MetricsServer::start(metrics_address(options_.metrics), [this] { return metrics(); });
+    if (!started) return tl::unexpected(started.error());
+    server = std::move(*started);
+  }
+  Status status = send_all();
+  sender_.finish();
+  server.reset();
+  if (record_) {
+    if (Status closed = record_->close(); !closed && status) status = closed;
+  }
+  report();
+  return status;
+}
+
+std::vector<Metric> Sending::metrics() const {
+  const SenderStatus s = sender_.status();
+  const auto number = [](auto value) { return static_cast<double>(value); };
+  return {
+      {"sweepcast_connected", "1 while there is a receiver", s.connected ? 1.0 : 0.0},
+      {"sweepcast_connections_total", "Connections made", number(s.connections)},
+      {"sweepcast_sweeps_total", "Sweeps to send", number(s.sweeps)},
+      {"sweepcast_sweeps_sent_total", "Sweeps of which all layers left", number(s.sweeps_sent)},
+      {"sweepcast_sweeps_cut_total", "Sweeps of which some layers left", number(s.sweeps_cut)},
+      {"sweepcast_sweeps_dropped_total", "Sweeps of which none left", number(s.sweeps_dropped)},
+      {"sweepcast_packets_total", "Packets sent", number(s.packets)},
+      {"sweepcast_packets_retransmitted_total", "... and repeated",
+       number(s.packets_retransmitted)},
+      {"sweepcast_packets_refused_total", "Packets that were not the receiver's",
+       number(s.packets_refused)},
+      {"sweepcast_bytes_total", "Bytes of packets sent", number(s.bytes)},
+      {"sweepcast_queue_bytes", "Bytes that wait", number(s.link.queued_bytes)},
+      {"sweepcast_queue_delay_seconds", "One-way delay above its least", s.link.queue_delay_s},
+      {"sweepcast_round_trip_seconds", "Round trip", s.link.round_trip_s},
+      {"sweepcast_receive_rate_bytes", "Bytes a second that arrive", s.link.receive_rate},
+      {"sweepcast_budget_sweep_bytes", "Bytes for the next sweeps", number(s.budget.sweep_bytes)},
+  };
+}
+
+std::string Sending::line() const {
+  const SenderStatus s = sender_.status();
+  if (!s.connected) return "not connected: " + s.error;
+  return fmt::format(
+      "{} sweeps, {} dropped, {:.1f} KB a sweep, {:.0f} KB/s arrive, queue {:.1f} KB and {:.0f} ms",
+      s.sweeps, s.sweeps_dropped, static_cast<double>(s.budget.sweep_bytes) / 1e3,
+      s.link.receive_rate / 1e3, static_cast<double>(s.link.queued_bytes) / 1e3,
+      s.link.queue_delay_s * 1e3);
+}
+
+void Sending::report() const {
+  const SenderStatus s = sender_.status();
+  if (options_.json) {
+    print_json({{"sweeps", s.sweeps},
+                {"sent", s.sweeps_sent},
+                {"cut", s.sweeps_cut},
+                {"dropped", s.sweeps_dropped},
+                {"packets", s.packets},
+                {"retransmitted", s.packets_retransmitted},
+                {"bytes", s.bytes},
+                {"connections", s.connections}});
+    return;
+  }
+  fmt::print("{} sweeps: {} sent, {} cut, {} dropped; {} bytes in {} packets, {} repeated\n",
+             s.sweeps, s.sweeps_sent, s.sweeps_cut, s.sweeps_dropped, s.bytes, s.packets,
+             s.packets_retransmitted);
+  if (s.connections == 0) print_note(options_.to + ": was never connected: " + s.error);
+}
+
+Status send(const SendOptions& options) {
+  const auto address = parse_address(options.to);
+  if (!address) return tl::unexpected(address.error());
+  const auto keys = read_link_keys(options.key_file);
+  if (!keys) return tl::unexpected(keys.error());
+  if (keys->size() != 1) {
+    return fail(ErrorCode::invalid_argument,
+                options.key_file + ": holds the keys of several robots; give this one's alone");
+  }
+  auto feeds = open_feeds(options);
+  if (!feeds) return tl::unexpected(feeds.error());
+  SenderOptions sender_options;
+  std::tie(sender_options.host, sender_options.port) = *address;
+  sender_options.key = keys->front();
+  sender_options.deadline = std::chrono::milliseconds(options.deadline_ms);
+  sender_options.choose_budget = measured_capacity_budget(1.0 / options.rate_hz);
+  auto sender = Sender::start(std::move(sender_options));
+  if (!sender) return tl::unexpected(sender.error());
+  stop_on_signals();
+  return Sending(options, std::move(*feeds), std::move(*sender)).run();
+}
+
+std::string check_name(const std::string& name) {
+  return is_link_name(name) ? "" : "\"" + name + "\" is not letters, digits, dots and dashes";
+}
+
+}  // namespace
+
+void add_send(CLI::App& app, Command& command) {
+  auto options = std::make_shared<SendOptions>();
+  options->encoder.beam.fields = Fields::xyz;
+  CLI::App* sub = app.add_subcommand("send", "Send sweeps to a receiver as a sensor makes them");
+  sub->add_option("INPUT", options->inputs,
+                  "A folder of clouds, a .sweep file, or - for a .sweep stream; one a sensor")
+      ->required();
+  sub->add_option("--to", options->to, "The receiver")->type_name("HOST:PORT")->required();
+  sub->add_option("--key", options->key_file, "This robot's key, see keygen")
+      ->type_name("FILE")
+      ->required();
+  sub->add_option("--sensor", options->sensors, "The sensor's name, one an INPUT [lidar]")
+      ->check(CLI::Validator(check_name, ""))
+      ->type_name("NAME");
+  sub->add_option("--rate", options->rate_hz, "Sweeps per second [10]")
+      ->check(number_between(0.1, 100))
+      ->type_name("HZ");
+  sub->add_flag("--loop", options->loop, "Begin again at the end, until a signal comes");
+  sub->add_option("--strategy", options->strategy,
+                  "budget: as many bytes as the link carries; fixed:L: one level [budget]")
+      ->check(CLI::Validator(check_strategy, ""))
+      ->type_name("NAME");
+  sub->add_option("--deadline", options->deadline_ms, "What is older is dropped, ms [250]")
+      ->check(CLI::Range(10, 10'000).description(""))
+      ->type_name("MS");
+  sub->add_option_function<std::string>(
+         "--codec",
+         [options](const std::string& name) {
+           options->encoder.codec = name == "rcpcc" ? CodecId::rcpcc : CodecId::beam;
+         },
+         "Codec of clouds; rcpcc needs --strategy fixed:L [beam]")
+      ->check(CLI::IsMember({"beam", "rcpcc"}).description(""))
+      ->type_name("beam|rcpcc");
+  sub->add_option_function<std::string>(
+         "--fields",
+         [options](const std::string& name) {
+           options->encoder.beam.fields =
+               name == "all" ? Fields::all : (name == "xyzi" ? Fields::xyzi : Fields::xyz);
+         },
+         "Which fields of clouds are sent [xyz]")
+      ->check(CLI::IsMember({"xyz", "xyzi", "all"}).description(""))
+      ->type_name("xyz|xyzi|all");
+  sub->add_option("--record", options->record, "Keep all sweeps here, at full quality")
+      ->type_name("FILE.sweep");
+  sub->add_option("--metrics", options->metrics, "Serve Prometheus text at /metrics")
+      ->type_name("[HOST:]PORT");
+  sub->add_flag("--json", options->json, "Print the outcome as JSON");
+  sub->footer("Example: sweepcast send drive/sweeps --to 192.168.1.5:5600 --key rover.key --loop");
+  sub->callback([options, &command] {
+    const bool is_fixed = options->strategy != "budget";
+    if (options->encoder.codec == CodecId::rcpcc && !is_fixed) {
+      throw CLI::ValidationError("--codec",
+                                 "rcpcc cannot be given a budget; add --strategy fixed:L");
+    }
+    if (options->inputs.size() > 1 && options->sensors.size() != options->inputs.size()) {
+      throw CLI::ValidationError("--sensor", "several inputs need a name each");
+    }
+    command = [options] { return send(*options); };
+  });
+}
+
+}  // namespace sweepcast::app

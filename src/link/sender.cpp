@@ -1,0 +1,369 @@
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "codec/frame_edit.hpp"
+#include "core/crc32.hpp"
+#include "link/feedback.hpp"
+#include "link/packet.hpp"
+#include "link/send_queue.hpp"
+#include "link/srt_socket.hpp"
+#include "sweepcast/link.hpp"
+
+namespace sweepcast {
+namespace {
+
+using namespace link;
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
+constexpr Microseconds kReportTimeout = 1'500'000;  // then the receiver counts as gone
+constexpr Microseconds kBurst = 5'000;              // what pacing may catch up with
+constexpr std::size_t kWireHead = 44;               // SRT, UDP and IPv4 heads of a packet
+constexpr double kUnderWay_s = 0.15;   // of packets at the budget's pace, and a round trip
+constexpr double kLeastUnderWay = 16;  // packets
+constexpr int kReceiveTimeout_ms = 50;
+constexpr microseconds kShortestSleep{4'000};  // several packets a wake-up: waking costs more
+constexpr milliseconds kRetry{100};
+constexpr milliseconds kBufferFull{2};
+constexpr milliseconds kExpiryCheck{20};
+
+/// A sensor, and what the receiver knows of it.
+struct Stream {
+  std::string sensor;
+  std::vector<std::byte> model;  ///< of the newest frame that had one
+  std::uint32_t model_id = 0;
+  std::uint32_t confirmed = 0;  ///< model that the receiver holds
+};
+
+/// A connection whose keys are agreed upon.
+struct Session {
+  SRTSOCKET socket;
+  PacketSealer sealer;
+};
+
+}  // namespace
+
+struct Sender::State {
+  explicit State(SenderOptions sender_options) : options(std::move(sender_options)) {}
+
+  SrtLibrary library;
+  SenderOptions options;
+  SocketAddress address;
+
+  mutable std::mutex mutex;  // guards all that follows
+  std::condition_variable wake;
+  bool stop = false;
+  SendQueue queue;
+  std::vector<Stream> streams;
+  std::optional<Session> session;
+  LinkObserver observer;
+  SenderStatus status;
+  std::uint64_t retransmitted_before = 0;  ///< by connections that have ended
+  std::vector<std::byte> rewritten, plain;
+
+  std::thread pacer, connector;
+
+  void run_connector();
+  void run_pacer();
+  [[nodiscard]] std::string converse(const SrtSocket& socket);
+  [[nodiscard]] bool begin_session(SRTSOCKET socket, const Challenge& ours,
+                                   std::span<const std::byte> packet,
+                                   std::optional<PacketOpener>& opener);
+  void take_report(PacketOpener& opener, std::span<const std::byte> packet, Microseconds now);
+  void update_budget(Microseconds now);
+  [[nodiscard]] Microseconds send_next(Microseconds now, Microseconds due);
+  [[nodiscard]] Result<std::uint8_t> stream_of(std::string_view sensor);
+  [[nodiscard]] Status prepare_frame(Stream& stream, std::span<const std::byte>& frame,
+                                     std::uint32_t& model);
+};
+
+/// Connects, and connects again, until the end.
+void Sender::State::run_connector() {
+  for (;;) {
+    std::string error;
+    auto socket = make_srt_socket();
+    if (!socket) {
+      error = socket.error().message;
+    } else if (!set_option(socket->get(), SRTO_STREAMID, options.key.robot) ||
+               !set_option(socket->get(), SRTO_PASSPHRASE, passphrase(options.key)) ||
+               srt_connect(socket->get(), address.get(), address.size) < 0) {
+      const int reason = srt_getrejectreason(socket->get());
+      const bool is_refused = reason == SRT_REJ_BADSECRET || reason == SRT_REJX_UNAUTHORIZED;
+      error = is_refused ? "the receiver refuses this robot: give both sides the same key, and the "
+                           "receiver room for one more peer"
+                         : "no receiver answers there; start one, or check the address";
+    } else {
+      error = converse(*socket);
+    }
+    std::unique_lock lock(mutex);
+    status.error = error;
+    if (wake.wait_for(lock, kRetry, [&] { return stop; })) return;
+  }
+}
+
+/// One connection's life. Returns why it ended.
+std::string Sender::State::converse(const SrtSocket& socket) {
+  const SRTSOCKET s = socket.get();
+  const Challenge ours = draw_challenge();
+  if (!set_option(s, SRTO_RCVTIMEO, kReceiveTimeout_ms) ||
+      srt_send_packet(s, write_hello(ours)) != SrtOutcome::done) {
+    return "the connection ended as it began";
+  }
+  std::optional<PacketOpener> opener;
+  std::vector<std::byte> buffer(kMostPacketBytes);
+  Microseconds heard = now_us();
+  std::string error;
+  while (error.empty()) {
+    std::span<const std::byte> packet;
+    const SrtOutcome outcome = srt_receive_packet(s, buffer, packet);
+    const Microseconds now = now_us();
+    const std::scoped_lock lock(mutex);
+    if (stop) break;
+    if (outcome == SrtOutcome::broken) error = "the connection was lost";
+    if (outcome == SrtOutcome::done) {
+      const std::uint64_t reports = status.reports;
+      if (!opener && begin_session(s, ours, packet, opener)) {
+        heard = now;
+      } else if (opener) {
+        take_report(*opener, packet, now);
+      }
+      if (status.reports != reports) heard = now;
+    }
+    if (now - heard > kReportTimeout) error = "the receiver is silent";
+    update_budget(now);
+  }
+  const std::scoped_lock lock(mutex);
+  session.reset();
+  queue.clear();
+  status.connected = false;
+  retransmitted_before = status.packets_retransmitted;
+  return error;
+}
+
+bool Sender::State::begin_session(SRTSOCKET socket, const Challenge& ours,
+                                  std::span<const std::byte> packet,
+                                  std::optional<PacketOpener>& opener) {
+  const auto theirs = read_hello(packet);
+  if (!theirs) {
+    ++status.packets_refused;
+    return false;
+  }
+  const SessionKeys keys = derive_session(options.key, ours, *theirs);
+  opener.emplace(keys.to_sender, PacketType::feedback);
+  session.emplace(Session{socket, PacketSealer(keys.to_receiver)});
+  observer = {};
+  for (Stream& stream : streams) stream.confirmed = 0;
+  status.connected = true;
+  status.error.clear();
+  ++status.connections;
+  wake.notify_all();
+  return true;
+}
+
+void Sender::State::take_report(PacketOpener& opener, std::span<const std::byte> packet,
+                                Microseconds now) {
+  std::span<const std::byte> content;
+  const auto report =
+      opener.open(packet, content) == PacketFault::none ? read_report(content) : std::nullopt;
+  if (!report) {
+    ++status.packets_refused;
+    return;
+  }
+  ++status.reports;
+  if (!observer.add(*report, now)) return;
+  for (const StreamReport& stream : report->streams) {
+    if (stream.stream < streams.size()) streams[stream.stream].confirmed = stream.model;
+  }
+  SRT_TRACEBSTATS stats;
+  if (srt_bstats(session->socket, &stats, 0) == 0) {
+    status.packets_retransmitted =
+        retransmitted_before + static_cast<std::uint64_t>(std::max(0, stats.pktRetransTotal));
+  }
+}
+
+void Sender::State::update_budget(Microseconds now) {
+  if (!session) return;
+  status.link = observer.state(now);
+  status.link.queued_bytes = queue.queued_bytes();
+  status.budget = options.choose_budget(status.link);
+}
+
+/// Sends packets one by one, at the budget's pace.
+void Sender::State::run_pacer() {
+  std::unique_lock lock(mutex);
+  Microseconds due = now_us();
+  while (!stop) {
+    if (queue.empty()) {
+      wake.wait(lock, [&] { return stop || !queue.empty(); });
+      continue;
+    }
+    const Microseconds now = now_us();
+    if (now < due) {
+      wake.wait_for(lock, std::max(microseconds(due - now), kShortestSleep));
+    } else if (!session) {
+      (void)queue.peek(now);  // what waits ends at its deadline all the same
+      wake.wait_for(lock, kExpiryCheck);
+    } else {
+      due = send_next(now, due);
+    }
+  }
+}
+
+/// Sends the next fragment, if there still is one. Returns when another one may follow.
+Microseconds Sender::State::send_next(Microseconds now, Microseconds due) {
+  const auto fragment = queue.peek(now);
+  if (!fragment) return due;
+  // What is under way cannot be taken back: as little as fills the link, so that after an outage
+  // fresh sweeps need not wait for stale packets.
+  const double rate = std::max(1e3, status.budget.bytes_per_second);
+  const double fills = rate * (kUnderWay_s + std::min(status.link.round_trip_s, kUnderWay_s)) /
+                       static_cast<double>(kMostPacketBytes);
+  const auto under_way = static_cast<double>(packets_under_way(session->socket));
+  if (under_way > std::max(kLeastUnderWay, fills)) {
+    return now + microseconds(kBufferFull).count();
+  }
+  write_fragment(*fragment, plain);
+  const auto packet = session->sealer.seal(PacketType::fragment, plain);
+  const SrtOutcome outcome = srt_send_packet(session->socket, packet);
+  if (outcome != SrtOutcome::done) return now + microseconds(kBufferFull).count();
+  queue.pop();
+  ++status.packets;
+  status.bytes += packet.size();
+  const double time = static_cast<double>(packet.size() + kWireHead) * 1e6 / rate;
+  return std::max(due, now - kBurst) + static_cast<Microseconds>(time);
+}
+
+Result<std::uint8_t> Sender::State::stream_of(std::string_view sensor) {
+  const auto found = std::find_if(streams.begin(), streams.end(),
+                                  [&](const Stream& stream) { return stream.sensor == sensor; });
+  if (found != streams.end()) return static_cast<std::uint8_t>(found - streams.begin());
+  if (streams.size() == kMostStreams) {
+    return fail(ErrorCode::limit, "a sender takes at most 16 sensors; start another one");
+  }
+  streams.push_back({std::string(sensor), {}, 0, 0});
+  return static_cast<std::uint8_t>(streams.size() - 1);
+}
+
+/// Puts the sensor's model into the frame where the receiver lacks it, and leaves it out where it
+/// has it. `model`: the one that the frame needs beside itself, 0 for none.
+Status Sender::State::prepare_frame(Stream& stream, std::span<const std::byte>& frame,
+                                    std::uint32_t& model) {
+  FrameHeader header;
+  if (Status parsed = parse_frame_header(frame, header); !parsed) return parsed;
+  const auto own = model_part(frame, header);
+  if (!own) return tl::unexpected(own.error());
+  if (!own->empty()) {
+    stream.model.assign(own->begin(), own->end());
+    stream.model_id = crc32(*own);
+  }
+  model = header.codec == CodecId::beam ? stream.model_id : 0;
+  if (stream.model.empty()) return {};
+  const bool receiver_has_it = stream.confirmed == stream.model_id;
+  if (receiver_has_it == own->empty()) return {};
+  const ModelPart what = receiver_has_it ? ModelPart::drop : ModelPart::put;
+  if (Status done = rewrite_frame(frame, what, stream.model, rewritten); !done) return done;
+  frame = rewritten;
+  return {};
+}
+
+Sender::Sender(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Sender::Sender(Sender&&) noexcept = default;
+Sender& Sender::operator=(Sender&& other) noexcept {
+  std::swap(state_, other.state_);
+  return *this;
+}
+
+Sender::~Sender() {
+  if (!state_) return;
+  {
+    const std::scoped_lock lock(state_->mutex);
+    state_->stop = true;
+  }
+  state_->wake.notify_all();
+  state_->pacer.join();
+  state_->connector.join();
+}
+
+Result<Sender> Sender::start(SenderOptions options) {
+  if (!is_link_name(options.key.robot)) {
+    return fail(ErrorCode::invalid_argument, "the key names no robot; make one with make_link_key");
+  }
+  if (options.deadline < milliseconds(10) || options.deadline > milliseconds(10'000)) {
+    return fail(ErrorCode::invalid_argument, "the deadline must lie between 10 ms and 10 s");
+  }
+  if (Status crypto = prepare_crypto(); !crypto) return tl::unexpected(crypto.error());
+  auto address = resolve(options.host, options.port);
+  if (!address) return tl::unexpected(address.error());
+  if (!options.choose_budget) options.choose_budget = measured_capacity_budget(0.1);
+  auto state = std::make_unique<State>(std::move(options));
+  state->address = *address;
+  state->status.budget = state->options.choose_budget({});
+  if (auto probe = make_srt_socket(); !probe) return tl::unexpected(probe.error());
+  state->pacer = std::thread([s = state.get()] { s->run_pacer(); });
+  state->connector = std::thread([s = state.get()] { s->run_connector(); });
+  return Sender(std::move(state));
+}
+
+Status Sender::send(const OutgoingSweep& sweep) {
+  if (!is_link_name(sweep.sensor) || sweep.name.size() > kMostSourceName) {
+    return fail(ErrorCode::invalid_argument,
+                "the sensor's name is 1 to 64 letters, digits, dots, dashes and underscores, and "
+                "the source's at most 64 bytes");
+  }
+  State& state = *state_;
+  const std::scoped_lock lock(state.mutex);
+  const auto number = state.stream_of(sweep.sensor);
+  if (!number) return tl::unexpected(number.error());
+  std::span<const std::byte> frame = sweep.frame;
+  SweepLabel label;
+  label.sensor = sweep.sensor;
+  label.name = sweep.name;
+  const auto captured =
+      std::chrono::duration_cast<microseconds>(sweep.captured.time_since_epoch()).count();
+  label.captured_us = static_cast<std::uint32_t>(captured);
+  if (Status done = state.prepare_frame(state.streams[*number], frame, label.model); !done) {
+    return done;
+  }
+  auto layers = cut_layers(frame, label, sweep.most_bytes);
+  if (!layers) return tl::unexpected(layers.error());
+  ++state.status.sweeps;
+  const Microseconds deadline = captured + microseconds(state.options.deadline).count();
+  state.queue.push(*number, std::move(*layers), deadline);
+  state.wake.notify_all();
+  return {};
+}
+
+LinkBudget Sender::budget() const {
+  const std::scoped_lock lock(state_->mutex);
+  return state_->status.budget;
+}
+
+SenderStatus Sender::status() const {
+  const std::scoped_lock lock(state_->mutex);
+  SenderStatus status = state_->status;
+  const SendCounts& counts = state_->queue.counts();
+  status.sweeps_sent = counts.sent;
+  status.sweeps_cut = counts.cut;
+  status.sweeps_dropped = counts.dropped;
+  status.link.queued_bytes = state_->queue.queued_bytes();
+  return status;
+}
+
+void Sender::finish() {
+  constexpr milliseconds kCheck{5};
+  const auto end = steady_clock::now() + state_->options.deadline;
+  std::unique_lock lock(state_->mutex);
+  while (steady_clock::now() < end) {
+    const bool has_arrived = !state_->session || packets_under_way(state_->session->socket) == 0;
+    if (state_->queue.empty() && has_arrived) return;
+    state_->wake.wait_for(lock, kCheck);
+  }
+}
+
+}  // namespace sweepcast

@@ -1,0 +1,83 @@
+// keygen, send and receive, run as a user runs them.
+#include <gtest/gtest.h>
+
+#include "apps/tool_fixture.hpp"
+
+namespace sweepcast::test {
+namespace {
+
+class LiveTool : public ToolTest {
+ protected:
+  /// Starts a receiver on a free port; sets `PORT` for the rest of the line.
+  static std::string receiving(const std::string& output, const std::string& more = "") {
+    return "\"$SWEEPCAST\" receive --listen 0 --keys k -o " + output + " " + more +
+           " 2>note & R=$!; until grep -q listening note; do kill -0 $R || exit 9; done; "
+           "PORT=$(sed -n 's/.*listening at .*:\\([0-9]*\\)$/\\1/p' note); ";
+  }
+  void SetUp() override {
+    ToolTest::SetUp();
+    make_recording(3);
+    ASSERT_EQ(run("keygen k --robot rover").exit_status, 0);
+  }
+};
+
+TEST_F(LiveTool, ARecordingArrivesWhole) {
+  const Outcome outcome =
+      shell(receiving("got", "--json >report") +
+            "\"$SWEEPCAST\" send room.sweep --to 127.0.0.1:$PORT --key k --sensor roof "
+            "--deadline 10000 --rate 2 --strategy fixed:0 --json; echo $?; kill -TERM $R; "
+            "wait $R; echo $?");
+  EXPECT_NE(outcome.out.find("\"sent\": 3"), std::string::npos) << outcome.out << outcome.err;
+  EXPECT_NE(outcome.out.find("}\n0\n0\n"), std::string::npos) << outcome.out << read("note");
+  EXPECT_EQ(list("got/rover"), (std::vector<std::string>{"roof.sweep"}));
+  const auto info = run("info got/rover/roof.sweep --json").json();
+  ASSERT_EQ(info["frames"].size(), 3U);
+  EXPECT_EQ(info["frames"][2]["name"], "000002");
+  EXPECT_EQ(run("decode got/rover/roof.sweep -o a").exit_status, 0);
+  EXPECT_EQ(run("decode room.sweep -o b").exit_status, 0);
+  EXPECT_EQ(read("a/000002.bin"), read("b/000002.bin"));
+}
+
+TEST_F(LiveTool, CloudsAreEncodedStreamedAndRecorded) {
+  const Outcome outcome =
+      shell(receiving("got.sweep", "--json >report") +
+            "\"$SWEEPCAST\" send sweeps --to 127.0.0.1:$PORT --key k --deadline 10000 --rate 2 "
+            "--record kept.sweep >/dev/null; cat room.sweep | \"$SWEEPCAST\" send - --to "
+            "127.0.0.1:$PORT --key k --deadline 10000 --rate 2 --json; kill -TERM $R; wait $R; "
+            "echo $?");
+  EXPECT_NE(outcome.out.find("\"sweeps\": 3"), std::string::npos) << outcome.out << outcome.err;
+  EXPECT_EQ(run("info kept.sweep --json").json()["frames"].size(), 3U);
+  EXPECT_EQ(run("decode kept.sweep -o kept").exit_status, 0);
+  EXPECT_EQ(run("info got.sweep --json").json()["frames"].size(), 6U) << read("report");
+  EXPECT_EQ(run("decode got.sweep -o got").exit_status, 0);
+}
+
+TEST_F(LiveTool, AReceiverEndsCleanlyWithoutAnySweep) {
+  const Outcome outcome = shell(receiving("-", ">out.sweep") + "kill -TERM $R; wait $R; echo $?");
+  EXPECT_EQ(outcome.out, "0\n");
+  EXPECT_EQ(run("info out.sweep --json").json()["frames"].size(), 0U);
+}
+
+TEST_F(LiveTool, ASenderEndsCleanlyWithoutAReceiver) {
+  const Outcome outcome = shell(
+      "\"$SWEEPCAST\" send sweeps --to 127.0.0.1:9 --key k --loop --record kept.sweep & "
+      "until [ -s kept.sweep ]; do kill -0 $! || exit 9; done; kill -TERM $!; wait $!; echo $?");
+  EXPECT_NE(outcome.out.find("\n0\n"), std::string::npos) << outcome.out << outcome.err;
+  EXPECT_EQ(run("decode kept.sweep -o kept").exit_status, 0);
+}
+
+TEST_F(LiveTool, MistakesAreNamed) {
+  expect_failure(run("keygen k --robot rover"), 1, {"k: ", "exists already"});
+  expect_failure(run("keygen x --robot ../up"), 1, {"robot's name"});
+  expect_failure(run("send sweeps --to 127.0.0.1 --key k"), 1, {"HOST:PORT"});
+  expect_failure(run("send sweeps --to 127.0.0.1:9 --key none"), 1, {"none: no such key"});
+  expect_failure(run("send sweeps --to 127.0.0.1:9 --key k --strategy best"), 2, {"--strategy"});
+  expect_failure(run("send sweeps sweeps --to 127.0.0.1:9 --key k"), 2, {"--sensor"});
+  expect_failure(run("receive --listen 70000 --keys k -o x"), 2, {"--listen"});
+  expect_failure(shell("chmod 644 k; \"$SWEEPCAST\" receive --listen 0 --keys k -o x"), 1,
+                 {"chmod 600"});
+  expect_failure(run("emulate-link --listen 0 --to 9 --trace none"), 1, {"none"});
+}
+
+}  // namespace
+}  // namespace sweepcast::test

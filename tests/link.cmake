@@ -1,0 +1,13 @@
+# Tests of the live link.
+sweepcast_test(codec/frame_edit)
+if(SWEEPCAST_WITH_LINK)
+  sweepcast_test(link/key sweepcast_link)
+  sweepcast_test(link/packet sweepcast_link PkgConfig::libsodium)
+  sweepcast_test(link/fragment sweepcast_link)
+  sweepcast_test(link/reassembly sweepcast_link)
+  sweepcast_test(link/feedback sweepcast_link)
+  sweepcast_test(link/send_queue sweepcast_link)
+  sweepcast_test(link/peer sweepcast_link)
+  sweepcast_test(link/live sweepcast_link)
+  sweepcast_test(link/relay sweepcast_link sweepcast_relay)
+endif()
