@@ -28,6 +28,8 @@ constexpr int kMostTries = 4;
 // After how many frames that is done again.
 constexpr int kReviewInterval = 10;
 
+constexpr std::size_t kFewExtras = 256;
+
 std::uint64_t as_unsigned(std::int64_t value) {
   return static_cast<std::uint64_t>(value);
 }
@@ -371,8 +373,9 @@ void Encoder::gather_extras(SweepCounts& counts) {
       placed_.z.push_back(z);
     }
   }
-  // What is missing to the exact coordinates takes the fewer bytes the less it is.
-  if (options_.lossless) return;
+  // What is missing to the exact coordinates takes the fewer bytes the less it is. And a few points
+  // share no places.
+  if (options_.lossless || lattice_.size() < kFewExtras) return;
   choose_places(placed_.x, placed_.y, placed_.z, step, error_m(), lattice_);
 }
 
