@@ -27,6 +27,7 @@ void SweepImager::learn_model(const CloudView& cloud) {
   if (!estimate->motions.empty()) motion_ = estimate->motions.front();
   projector_.emplace(*model_);
   unprojector_.emplace(*model_);
+  beams_ = beam_geometry(*model_);
   std::vector<std::byte> bytes;
   ByteWriter out(bytes);
   write_model(*model_, out);
@@ -96,7 +97,6 @@ void SweepImager::move_nearer(std::int32_t range) {
 // Moves to the extras what would miss the bound once its range is rounded, and what is too near.
 void SweepImager::keep_bound(double max_error_m) {
   unprojector_->unproject(image_, placed_);
-  const std::vector<BeamGeometry> beams = beam_geometry(*model_);
   const double along = 0.5 * range_step(max_error_m) / kRangeUnits;
   // A hundredth is kept back: a deskewed point's beam is a little off the direction taken below.
   const double bound = 0.99 * max_error_m * max_error_m;
@@ -119,7 +119,7 @@ void SweepImager::keep_bound(double max_error_m) {
     const double dy = py - wanted[1];
     const double dz = placed[2] - wanted[2];
     // The rounding moves the point along its beam by up to half a step, either way.
-    const BeamGeometry& beam = beams[cell / static_cast<std::size_t>(image_.cols)];
+    const BeamGeometry& beam = beams_[cell / static_cast<std::size_t>(image_.cols)];
     const double rho = std::sqrt(px * px + py * py);
     const double inward =
         ((dx * px + dy * py) / (rho > 1e-4 ? rho : 1.0) + dz * beam.tan) * beam.inverse_slant;

@@ -53,6 +53,7 @@ class SweepImager {
   int patience_ = 4;
   std::optional<BeamProjector> projector_;
   std::optional<BeamUnprojector> unprojector_;
+  std::vector<BeamGeometry> beams_;
   std::vector<float> x_, y_, z_;
   std::vector<std::uint32_t> chosen_;  ///< points that the crop leaves, where it takes any
   BeamImage image_;
