@@ -20,6 +20,8 @@ struct EmulateOptions {
   std::string trace;
   double delay_ms = 0.0;
   double jitter_ms = 0.0;
+  double loss_percent = 0.0;
+  double reordering_percent = 0.0;
   bool json = false;
 };
 
@@ -33,6 +35,8 @@ Status emulate(EmulateOptions& options) {
   options.relay.trace = std::move(*trace);
   options.relay.link.delay_us = microseconds(options.delay_ms);
   options.relay.link.jitter_us = microseconds(options.jitter_ms);
+  options.relay.link.loss = options.loss_percent / 100.0;
+  options.relay.link.reordering = options.reordering_percent / 100.0;
   const auto relay = Relay::start(options.relay);
   if (!relay) return tl::unexpected(relay.error());
   stop_on_signals();
@@ -104,13 +108,13 @@ void add_emulate_link(CLI::App& app, Command& command) {
   sub->add_option("--jitter", options->jitter_ms, "Further delay, from 0 to this [0]")
       ->check(number_between(0, 60'000))
       ->type_name("MS");
-  sub->add_option("--loss", relay.link.loss, "Share of packets that are lost [0]")
-      ->check(number_between(0, 1))
-      ->type_name("0..1");
-  sub->add_option("--reorder", relay.link.reordering, "Share that others overtake [0]")
-      ->check(number_between(0, 1))
-      ->type_name("0..1");
-  sub->add_option("--queue", relay.link.queue_limit, "Room for what waits; 0: no limit [0]")
+  sub->add_option("--loss", options->loss_percent, "Packets that are lost [0]")
+      ->check(number_between(0, 100))
+      ->type_name("PERCENT");
+  sub->add_option("--reorder", options->reordering_percent, "Packets that others overtake [0]")
+      ->check(number_between(0, 100))
+      ->type_name("PERCENT");
+  sub->add_option("--queue-limit", relay.link.queue_limit, "Room for what waits; 0: no limit [0]")
       ->check(whole_number())
       ->type_name("BYTES");
   sub->add_option("--seed", relay.link.seed, "Of what is left to chance [1]")
@@ -118,8 +122,7 @@ void add_emulate_link(CLI::App& app, Command& command) {
       ->type_name("N");
   sub->add_flag("--json", options->json, "Print the outcome as JSON");
   sub->footer(
-      "Example: sweepcast emulate-link --listen 5601 --to 5600 --trace paper --delay 30 --loss "
-      "0.02");
+      "Example: sweepcast emulate-link --listen 5601 --to 5600 --trace paper --delay 30 --loss 2");
   sub->callback([options, &command] { command = [options] { return emulate(*options); }; });
 }
 
