@@ -224,7 +224,10 @@ Status Sending::run() {
     if (Status closed = record_->close(); !closed && status) status = closed;
   }
   report();
-  return status;
+  const SenderStatus s = sender_.status();
+  if (!status || s.connections > 0 || s.sweeps == 0 || stop_requested()) return status;
+  return fail(ErrorCode::not_found, options_.to + ": was never connected, so nothing was sent: " +
+                                        (s.error.empty() ? "nobody answers there" : s.error));
 }
 
 std::vector<Metric> Sending::metrics() const {
@@ -277,7 +280,6 @@ void Sending::report() const {
   fmt::print("{} sweeps: {} sent, {} cut, {} dropped; {} bytes in {} packets, {} repeated\n",
              s.sweeps, s.sweeps_sent, s.sweeps_cut, s.sweeps_dropped, s.bytes, s.packets,
              s.packets_retransmitted);
-  if (s.connections == 0) print_note(options_.to + ": was never connected: " + s.error);
 }
 
 Status send(const SendOptions& options) {

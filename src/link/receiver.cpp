@@ -112,7 +112,7 @@ Status Receiver::State::listen() {
   // Both families have the port at the same place.
   port = ntohs(reinterpret_cast<const sockaddr_in*>(&bound.storage)->sin_port);
   epoll = srt_epoll_create();
-  const int events = SRT_EPOLL_IN | SRT_EPOLL_ERR;
+  const int events = int{SRT_EPOLL_IN} | int{SRT_EPOLL_ERR};
   if (epoll < 0 || srt_epoll_add_usock(epoll, s, &events) < 0) {
     return fail(ErrorCode::unsupported, "SRT gives no events; see its version");
   }
@@ -149,7 +149,7 @@ void Receiver::State::accept_all() {
     int size = sizeof(id) - 1;
     const bool named = srt_getsockflag(socket.get(), SRTO_STREAMID, id, &size) == 0;
     const LinkKey* key = named ? find_key(id) : nullptr;
-    const int events = SRT_EPOLL_IN | SRT_EPOLL_ERR;
+    const int events = int{SRT_EPOLL_IN} | int{SRT_EPOLL_ERR};
     if (key == nullptr || !set_option(socket.get(), SRTO_RCVSYN, false) ||
         srt_epoll_add_usock(epoll, socket.get(), &events) < 0) {
       continue;

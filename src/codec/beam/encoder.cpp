@@ -30,6 +30,10 @@ constexpr int kReviewInterval = 10;
 
 constexpr std::size_t kFewExtras = 256;
 
+// Under wider bounds an octree's points would be off by as much as the bound, where the image's are
+// off by half of it: too dear for the bytes.
+constexpr double kWidestCrowd = 0.1;
+
 std::uint64_t as_unsigned(std::int64_t value) {
   return static_cast<std::uint64_t>(value);
 }
@@ -113,7 +117,8 @@ Status Encoder::encode(const CloudView& cloud, const SweepInfo& info, PartList& 
   attributes_.read(cloud, options_);
   imager_.project(cloud, error_m(), counts);
   const bool may_choose = !budget_ && !options_.level && !options_.lossless &&
-                          options_.effort != Effort::fast && imager_.image().cols > 0;
+                          options_.max_error_m <= kWidestCrowd && options_.effort != Effort::fast &&
+                          imager_.image().cols > 0;
   const bool review = may_choose && frames_to_review_-- == 0;
   if (may_choose && !review) {
     if (extras_.all) {

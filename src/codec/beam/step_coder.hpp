@@ -147,8 +147,8 @@ class StepCoder {
 
   [[nodiscard]] std::int32_t in_steps(std::int32_t difference) const {
     // The quotient's floor, exactly, for half a unit keeps it clear of whole numbers.
-    const double rounded = std::abs(difference) + scale_.step / 2 + 0.5;
-    const auto size = static_cast<std::int32_t>(rounded * steps_per_unit_);
+    const std::int32_t shifted = std::abs(difference) + scale_.step / 2;
+    const auto size = static_cast<std::int32_t>((shifted + 0.5) * steps_per_unit_);
     return difference < 0 ? -size : size;
   }
 

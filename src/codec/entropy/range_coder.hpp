@@ -64,10 +64,9 @@ class RangeEncoder {
   void finish() {
     // Any number inside will do, so the one with the fewest bytes: past the end, zeros are read.
     const int bits = 32 + pending_;
-    std::uint64_t value = low_;
     for (int kept = 0; kept <= bits; kept += 8) {
       const std::uint64_t below = (std::uint64_t{1} << (bits - kept)) - 1;
-      value = (low_ + below) & ~below;
+      const std::uint64_t value = (low_ + below) & ~below;
       if (value - low_ >= range_) continue;
       if ((value >> bits) != 0) carry();
       for (int at = 8; at <= kept; at += 8) {
@@ -98,9 +97,9 @@ class RangeEncoder {
 
   // Adds 1 to what is written: never beyond this coder's bytes, whose number is below 1.
   void carry() {
-    for (auto byte = out_.rbegin(); byte != out_.rend(); ++byte) {
-      *byte = static_cast<std::byte>(static_cast<unsigned>(*byte) + 1U);
-      if (*byte != std::byte{0}) return;
+    for (std::size_t at = out_.size(); at-- > 0;) {
+      out_[at] = static_cast<std::byte>(static_cast<unsigned>(out_[at]) + 1U);
+      if (out_[at] != std::byte{0}) return;
     }
   }
 

@@ -138,7 +138,7 @@ Status FrameMaker::measure(const std::set<FrameKey>& keys, FrameSet& frames,
     if (frames.qualities.contains(key)) continue;
     const auto& path = paths_[key.sweep];
     if (sweep != key.sweep) {
-      if (const Status read = read_cloud(path, cloud); !read) return read;
+      if (Status read = read_cloud(path, cloud); !read) return read;
       reference.emplace(cloud);
       sweep = key.sweep;
     }

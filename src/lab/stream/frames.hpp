@@ -23,7 +23,8 @@ struct FrameKey {
   std::size_t setting = 0;
   std::size_t layers = 0;  ///< at least 1
 
-  [[nodiscard]] auto operator<=>(const FrameKey&) const = default;
+  // clang-tidy 14 mistakes the comparison with 0 for one with a pointer.
+  [[nodiscard]] auto operator<=>(const FrameKey&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 /// How near a decoded sweep is to the original, what was left out filled in.
