@@ -142,7 +142,8 @@ TEST(HeldFirings, APointThatFitsNeitherLosesItsPlace) {
   // a held firing's nor, as firing 100 is held, a turning one's.
   const std::vector<std::int32_t> interpolated{0, 5, 5, 5};
   std::vector<FiringPlace> places{{100, 0}, {95, 1}, {95, 2}, {95, 3}, {100, 1}};
-  const auto held = HeldFirings().find(places, interpolated, 1000);
+  HeldFirings finder;
+  const auto held = finder.find(places, interpolated, 1000);
   EXPECT_EQ(held[100], 1);
   EXPECT_EQ(std::count(held.begin(), held.end(), 1), 1);
   for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(places[i].tick, 100);

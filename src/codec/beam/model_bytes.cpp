@@ -31,7 +31,7 @@ void write_model(const SensorModel& model, ByteWriter& out) {
   write_mount(model.mount, out);
   out.put_varint(model.beams.size());
   for (const auto number : kNumbers) {
-    const std::int32_t first = model.beams.front().*number;
+    const std::int32_t first = model.beams.empty() ? 0 : model.beams.front().*number;
     const bool all_alike = std::all_of(model.beams.begin(), model.beams.end(),
                                        [&](const Beam& beam) { return beam.*number == first; });
     out.put(static_cast<std::uint8_t>(all_alike ? 1 : 0));
