@@ -27,3 +27,12 @@ function(sweepcast_target name)
   target_link_libraries(${name} PRIVATE $<BUILD_INTERFACE:sweepcast_build>)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/src)
 endfunction()
+
+# sweepcast_commands(NAME): in optimised builds the files of a program that includes CLI11 and JSON
+# everywhere are compiled a few at a time, since those headers take longer than the files. Their
+# unnamed namespaces then meet. Debug builds keep files apart: one that changes is built alone.
+function(sweepcast_commands name)
+  if(NOT CMAKE_BUILD_TYPE STREQUAL Debug)
+    set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 7)
+  endif()
+endfunction()

@@ -43,7 +43,7 @@ struct Decoded {
 };
 
 /// Buffers that are reused from frame to frame.
-struct Workspace {
+struct DecodeWorkspace {
   std::vector<std::byte> frame;
   PointCloud cloud;
   Decoder decoder;
@@ -56,7 +56,7 @@ CloudEncoding encoding_of(const DecodeOptions& options) {
 }
 
 /// Decodes frame `i`. An error here is the frame's own: the next one may be sound.
-Result<Decoded> decode_one(SweepReader& reader, std::size_t i, Workspace& work) {
+Result<Decoded> decode_one(SweepReader& reader, std::size_t i, DecodeWorkspace& work) {
   if (Status read = reader.read(i, work.frame); !read) return tl::unexpected(read.error());
   const double begin = cpu_time_ms();
   const Status decoded = work.decoder.decode(work.frame, work.cloud);
@@ -111,7 +111,7 @@ Status decode(const DecodeOptions& options) {
   if (Status made = make_folder(options.folder); !made) return made;
   const CloudFormat format = *cloud_format_of("x." + options.format);
 
-  Workspace work;
+  DecodeWorkspace work;
   work.decoder = Decoder({.max_layers = options.layers, .fill = options.fill});
   std::vector<Decoded> frames;
   std::vector<std::string> errors;
