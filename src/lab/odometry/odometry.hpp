@@ -1,0 +1,55 @@
+// LiDAR odometry: where the sensor was at each sweep, from the sweeps alone.
+//
+// Follows KISS-ICP (Vizzo et al., IEEE RA-L 2023): constant-velocity prediction and deskewing, two
+// voxel grids, an adaptive threshold, point-to-point ICP against a voxel map. One difference: of a
+// cube's points the one nearest to a random place in it stays, not the first, so that two codecs
+// that give the same points in another order give the same path.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "lab/odometry/registration.hpp"
+#include "lab/odometry/rigid.hpp"
+#include "lab/odometry/voxel_map.hpp"
+#include "sweepcast/cloud.hpp"
+
+namespace sweepcast::lab {
+
+struct OdometryOptions {
+  double min_range_m = 3.0;  ///< nearer points are the robot itself
+  double max_range_m = 100.0;
+  double voxel_m = 1.0;  ///< the map's cubes; a hundredth of the range
+  double initial_threshold_m = 2.0;
+  double min_motion_m = 0.1;  ///< smaller corrections do not teach the threshold
+};
+
+/// A sensor that moves. Feed sweeps in the order of their time.
+class Odometry {
+ public:
+  explicit Odometry(const OdometryOptions& options);
+
+  /// Registers a sweep whose points are in the sensor's frame. `when` says at which share of the
+  /// sweep each point was measured (0: first firing, 1: last), or is empty where the points are
+  /// deskewed already. NaN and infinite points are passed over. Returns the sensor's pose at the
+  /// last firing (deskewed sweeps: in their frame) in that of the first sweep.
+  RigidTransform add(const PointCloud& cloud, std::span<const float> when);
+
+  /// The poses so far, one a sweep.
+  [[nodiscard]] const std::vector<RigidTransform>& poses() const { return poses_; }
+
+ private:
+  [[nodiscard]] RigidTransform predicted_motion() const;
+  [[nodiscard]] Points in_range(const PointCloud& cloud, std::span<const float> when,
+                                const RigidTransform& motion) const;
+  void learn_threshold(const RigidTransform& correction);
+
+  OdometryOptions options_;
+  VoxelMap map_;
+  std::vector<RigidTransform> poses_;
+  double squared_corrections_ = 0.0;
+  int corrections_ = 0;
+  double threshold_m_;
+};
+
+}  // namespace sweepcast::lab
