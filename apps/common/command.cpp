@@ -5,12 +5,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <exception>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -66,11 +68,51 @@ CLI::App* called_bare(CLI::App& app, int argc, char** argv) {
   return argc == 2 ? find_subcommand(app, argv[1]) : nullptr;
 }
 
+/// What the command line's library says, in the words of the rest of the tool.
+std::string in_plain_words(const std::string& message) {
+  struct Rewording {
+    const char* theirs;
+    const char* ours;
+  };
+  constexpr std::array<Rewording, 9> kRewordings{{
+      {"A subcommand is required", "a command comes first, as in `sweepcast info FILE`"},
+      {"(.*): At least (.*) required but received (.*)",
+       "$1: takes $2 values, separated by commas, and is given $3"},
+      {"(.*) excludes (.*)", "$1: cannot go with $2; leave one of them out"},
+      {"(.*): 1 required (.*) missing", "$1: needs a value, $2"},
+      {"(.*): At Most 1 required but received (.*)", "$1: is given $2 times; give it once"},
+      {"(.*): Value (.*) not in range (.*) to (.*)", "$1: $2 is not a whole number from $3 to $4"},
+      {"(.*): (.*) not in \\{(.*)\\}", "$1: $2 is not one of $3"},
+      {"(.*) is required", "$1 is missing; add it"},
+      {"Could not convert: (.*) = (.*)", "$1: $2 is not a value that it takes"},
+  }};
+  for (const Rewording& rewording : kRewordings) {
+    const std::regex theirs(rewording.theirs);
+    if (std::regex_match(message, theirs)) {
+      return std::regex_replace(message, theirs, rewording.ours);
+    }
+  }
+  return message;
+}
+
+/// Words that the command does not take; empty where there are none.
+std::string unexpected_words(const CLI::App& app) {
+  std::string words;
+  for (const CLI::App* sub : app.get_subcommands()) {
+    for (const std::string& word : sub->remaining()) words += " " + word;
+  }
+  if (words.empty()) return words;
+  return "not expected:" + words + "; check the spelling, or leave it out";
+}
+
 /// Says what is wrong with the command line, and where to read how it should be.
 int refuse(const CLI::App& app, const CLI::ParseError& error) {
   std::string command = app.get_name();
   for (const CLI::App* sub : app.get_subcommands()) command += " " + sub->get_name();
-  print_error(fmt::format("{}; see `{} --help`", error.what(), command));
+  const bool is_extra = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError);
+  std::string message = is_extra ? unexpected_words(app) : "";
+  if (message.empty()) message = in_plain_words(error.what());
+  print_error(fmt::format("{}; see `{} --help`", message, command));
   return 2;
 }
 
@@ -161,6 +203,10 @@ int run(CLI::App& app, const Command& command, int argc, char** argv) {
 
 void print_error(std::string_view message) {
   say("error", message);
+}
+
+void print_warning(std::string_view message) {
+  say("warning", message);
 }
 
 void print_note(std::string_view message) {

@@ -42,6 +42,10 @@ enum class Part : std::uint8_t {
 
 [[nodiscard]] std::string_view part_name(std::uint8_t kind) noexcept;
 
+/// How many layers a frame with this part `grid` was made of; a link may have cut some off.
+/// None where the part cannot be right.
+[[nodiscard]] std::optional<int> layers_of_grid(std::span<const std::byte> grid);
+
 [[nodiscard]] Status check(const BeamOptions& options);
 
 /// Makes parts of sweeps; keeps its buffers, and the sensor's model from sweep to sweep.
