@@ -77,7 +77,7 @@ Status check_intensity_step(const PointCloud& cloud, double step) {
   if (span == 0.0 || step <= span) return {};
   return fail(ErrorCode::invalid_argument,
               fmt::format("--intensity-step {:g} would leave nothing of its intensities, which are "
-                          "{:g} to {:g}; choose a smaller step, as {:g}",
+                          "{:g} to {:g}; choose a smaller step, as {:.1g}",
                           step, least, most, span / 100.0));
 }
 

@@ -254,9 +254,13 @@ void report_text(const VerifyOptions& options, std::size_t frames, const Totals&
     fmt::print("  worst attribute differences: {}\n", text);
   }
   if (const std::string text = totals.layers.text(); !text.empty()) fmt::print("  {}\n", text);
-  fmt::print("  {} points in, {} kept; lost: {}{}\n", totals.counts.points_in(), totals.decoded,
-             totals.counts.losses(),
-             totals.cut() == 0 ? "" : fmt::format("; {} in layers that are missing", totals.cut()));
+  std::string lost = totals.counts.losses();
+  if (totals.cut() > 0) {
+    const std::string cut = fmt::format("{} in layers that are missing", totals.cut());
+    lost = lost == "none" ? cut : lost + ", " + cut;
+  }
+  fmt::print("  {} points in, {} kept; lost: {}\n", totals.counts.points_in(), totals.decoded,
+             lost);
 }
 
 Status verify(const VerifyOptions& options) {

@@ -64,6 +64,7 @@ TEST_F(VerifyTest, ComparesWhatCameAndTellsWhatIsMissing) {
 
   const Outcome text = run("verify got.sweep --original sweeps");
   EXPECT_NE(text.out.find("2 of 3 frames lack layers"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find(" in layers that are missing"), std::string::npos) << text.out;
   EXPECT_NE(text.out.find("--fill"), std::string::npos) << text.out;
 }
 
