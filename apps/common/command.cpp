@@ -12,8 +12,9 @@
 #include <cstring>
 #include <exception>
 #include <nlohmann/json.hpp>
-#include <regex>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/interruption.hpp"
@@ -68,28 +69,48 @@ CLI::App* called_bare(CLI::App& app, int argc, char** argv) {
   return argc == 2 ? find_subcommand(app, argv[1]) : nullptr;
 }
 
+/// What the stars of a pattern stand for in a text, up to four; none where it does not match.
+std::optional<std::array<std::string_view, 4>> match(std::string_view pattern,
+                                                     std::string_view text) {
+  std::array<std::string_view, 4> found{};
+  for (std::string_view& part : found) {
+    const std::size_t star = pattern.find('*');
+    if (text.substr(0, star) != pattern.substr(0, star)) return std::nullopt;
+    if (star == std::string_view::npos) return found;
+    text.remove_prefix(star);
+    pattern.remove_prefix(star + 1);
+    const std::string_view next = pattern.substr(0, pattern.find('*'));
+    const bool is_last = next.size() == pattern.size();
+    const std::size_t end = is_last && next.empty() ? text.size() : text.find(next);
+    if (end == std::string_view::npos) return std::nullopt;
+    part = text.substr(0, end);
+    text.remove_prefix(end);
+  }
+  return text == pattern ? std::optional(found) : std::nullopt;
+}
+
 /// What the command line's library says, in the words of the rest of the tool.
 std::string in_plain_words(const std::string& message) {
   struct Rewording {
-    const char* theirs;
-    const char* ours;
+    std::string_view theirs;
+    std::string_view ours;
   };
   constexpr std::array<Rewording, 9> kRewordings{{
       {"A subcommand is required", "a command comes first, as in `sweepcast info FILE`"},
-      {"(.*): At least (.*) required but received (.*)",
-       "$1: takes $2 values, separated by commas, and is given $3"},
-      {"(.*) excludes (.*)", "$1: cannot go with $2; leave one of them out"},
-      {"(.*): 1 required (.*) missing", "$1: needs a value, $2"},
-      {"(.*): At Most 1 required but received (.*)", "$1: is given $2 times; give it once"},
-      {"(.*): Value (.*) not in range (.*) to (.*)", "$1: $2 is not a whole number from $3 to $4"},
-      {"(.*): (.*) not in \\{(.*)\\}", "$1: $2 is not one of $3"},
-      {"(.*) is required", "$1 is missing; add it"},
-      {"Could not convert: (.*) = (.*)", "$1: $2 is not a value that it takes"},
+      {"*: At least * required but received *",
+       "{}: takes {} values, separated by commas, and is given {}"},
+      {"* excludes *", "{}: cannot go with {}; leave one of them out"},
+      {"*: 1 required * missing", "{}: needs a value, {}"},
+      {"*: At Most 1 required but received *", "{}: is given {} times; give it once"},
+      {"*: Value * not in range * to *", "{}: {} is not a whole number from {} to {}"},
+      {"*: * not in {*}", "{}: {} is not one of {}"},
+      {"* is required", "{} is missing; add it"},
+      {"Could not convert: * = *", "{}: {} is not a value that it takes"},
   }};
-  for (const Rewording& rewording : kRewordings) {
-    const std::regex theirs(rewording.theirs);
-    if (std::regex_match(message, theirs)) {
-      return std::regex_replace(message, theirs, rewording.ours);
+  for (const auto& [theirs, ours] : kRewordings) {
+    if (const auto parts = match(theirs, message)) {
+      const auto& [first, second, third, fourth] = *parts;
+      return fmt::format(fmt::runtime(ours), first, second, third, fourth);
     }
   }
   return message;

@@ -74,7 +74,7 @@ Result<std::string> source_name(const SweepEntry& entry, const FrameHeader& head
 
 Result<std::string> SweepNames::next(const SweepEntry& entry, const FrameHeader& header) {
   const auto base = source_name(entry, header);
-  if (!base) return base;
+  if (!base) return tl::unexpected(base.error());
   std::string name = *base;
   for (int i = 2; !used_.insert(name).second; ++i) name = fmt::format("{}-{}", *base, i);
   return name;

@@ -15,6 +15,7 @@ using Eigen::Vector3d;
 /// Squared distances to all points, nearest first, as many as a query gives.
 std::vector<double> nearest_squares(const std::vector<Vector3d>& points, const Vector3d& query) {
   std::vector<double> squares;
+  squares.reserve(points.size());
   for (const Vector3d& point : points) squares.push_back((point - query).squaredNorm());
   std::sort(squares.begin(), squares.end());
   squares.resize(std::min(squares.size(), PointTree::kMostNeighbours));
