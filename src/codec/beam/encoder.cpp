@@ -335,7 +335,7 @@ void Encoder::write_grid(PartList& parts) {
   out.put_varint(as_unsigned(image.cols));
   if (image.cols > 0) {
     out.put(imager_.model_id());
-    out.put(static_cast<std::uint8_t>(plan_.effort));
+    out.put(coding_of(plan_));
     out.put(static_cast<std::uint8_t>(kBaseRows));
     out.put(static_cast<std::uint8_t>(kBaseCols));
     for (const LayerQuality& quality : plan_.quality) {
