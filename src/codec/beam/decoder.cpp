@@ -188,10 +188,10 @@ bool Decoder::read_grid(std::span<const std::byte> bytes, std::size_t most) {
   image_.cols = static_cast<int>(in.get_varint(kMaxTicks));
   if (image_.cols == 0) return in.ok();
   const auto id = in.get<std::uint32_t>();
-  plan_.effort = static_cast<Effort>(in.get<std::uint8_t>());
+  const bool is_coding = set_coding(in.get<std::uint8_t>(), plan_);
   const int base_rows = in.get<std::uint8_t>();
   const int base_cols = in.get<std::uint8_t>();
-  if (!is_stride(base_rows) || !is_stride(base_cols) || plan_.effort > Effort::best) return false;
+  if (!is_stride(base_rows) || !is_stride(base_cols) || !is_coding) return false;
   plan_.quality.resize(static_cast<std::size_t>(layers_of(base_cols)));
   for (LayerQuality& quality : plan_.quality) {
     quality.step = static_cast<std::int32_t>(in.get_varint(kLargestStep));
