@@ -1,5 +1,8 @@
 #include "cloud_target.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  return sweepcast::fuzz::check_cloud(data, size, sweepcast::parse_pcd, sweepcast::serialize_pcd);
+  const auto parse = [](std::span<const std::byte> bytes, sweepcast::PointCloud& cloud) {
+    return sweepcast::parse_pcd(bytes, cloud);
+  };
+  return sweepcast::fuzz::check_cloud(data, size, parse, sweepcast::serialize_pcd);
 }

@@ -1,5 +1,6 @@
 # Tests of src/lab.
 sweepcast_test(lab/distortion sweepcast_measure)
+sweepcast_test(lab/point_tree nanoflann::nanoflann Eigen3::Eigen)
 if(SWEEPCAST_APPS)
   sweepcast_test(lab/bench sweepcast_bench sweepcast_app)
 endif()

@@ -10,6 +10,8 @@
 #include <string>
 #include <string_view>
 
+#include "common/validators.hpp"
+
 namespace sweepcast::app {
 
 namespace {
@@ -77,27 +79,24 @@ Box box_of(const std::array<double, 6>& c, const std::string& option) {
 }
 
 void add_quality(CLI::App& app, EncoderOptions& options) {
-  auto* level = app.add_option_function<int>(
-                       "--level",
-                       [&options](int chosen) {
-                         options.beam.level = chosen;
-                         options.rcpcc.params = kRcpccLevels.at(static_cast<std::size_t>(chosen));
-                       },
-                       "Level of the codec's quality ladder, 0 the finest")
-                    ->check(CLI::Range(0, static_cast<int>(kBeamLevels.size()) - 1).description(""))
-                    ->type_name("0..5");
-  auto* error =
-      app.add_option("--max-error", options.beam.max_error_m,
-                     fmt::format("Codec beam: no point decodes farther from its place [{}]",
-                                 options.beam.max_error_m))
-          ->type_name("METRES")
-          ->excludes(level);
+  app.add_option_function<int>(
+         "--level",
+         [&options](int chosen) {
+           options.beam.level = chosen;
+           options.rcpcc.params = kRcpccLevels.at(static_cast<std::size_t>(chosen));
+         },
+         "Level of the codec's quality ladder, 0 the finest")
+      ->check(CLI::Range(0, static_cast<int>(kBeamLevels.size()) - 1).description(""))
+      ->type_name("0..5");
+  app.add_option("--max-error", options.beam.max_error_m,
+                 fmt::format("Codec beam: no point decodes farther from its place [{}]",
+                             options.beam.max_error_m))
+      ->check(number_between(0.001, 2.0))
+      ->type_name("METRES");
   app.add_option("--target-bytes", options.beam.target_bytes,
                  "Codec beam: as good as fits so many bytes a sweep, the sensor model apart")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 28).description(""))
-      ->type_name("N")
-      ->excludes(level)
-      ->excludes(error);
+      ->type_name("N");
   add_choice<Effort>(app, "--effort", options.beam.effort,
                      {{"fast", Effort::fast}, {"default", Effort::normal}, {"best", Effort::best}},
                      "Codec beam: time spent to save bytes, in encoding and decoding [default]");
@@ -107,9 +106,7 @@ void add_quality(CLI::App& app, EncoderOptions& options) {
                  [&options, &app](const std::array<double, 4>& p) {
                    if (app.get_option("--codec")->count() == 0) options.codec = CodecId::rcpcc;
                    options.rcpcc.params = {p[0], p[1], p[2], p[3]};
-                 })
-      ->excludes(level)
-      ->excludes(error);
+                 });
 }
 
 void add_fields(CLI::App& app, BeamOptions& beam) {
@@ -119,6 +116,7 @@ void add_fields(CLI::App& app, BeamOptions& beam) {
       "Codec beam: which fields are kept: coordinates, intensity, ring and time [all]");
   app.add_option("--intensity-step", beam.intensity_step,
                  "Codec beam: round intensities to multiples of this; 0: keep them exactly [0]")
+      ->check(number_between(0.0, 1e6))
       ->type_name("STEP");
   app.add_flag("--keep-order", beam.keep_order,
                "Codec beam: points come back in the order of the input, not firing by firing");
@@ -183,6 +181,11 @@ void add_crop_options(CLI::App& app, Crop& crop) {
   add_numbers<2>(app, "--crop-range", "MIN,MAX",
                  "Leave out points nearer or farther, metres; MAX 0: no limit",
                  [&crop](const std::array<double, 2>& range) {
+                   if (range[0] < 0.0 || (range[1] != 0.0 && range[1] < range[0])) {
+                     throw CLI::ValidationError("--crop-range",
+                                                "MIN is from 0 to MAX, or MAX is 0 for no limit; "
+                                                "give the nearer distance first");
+                   }
                    crop.min_range = static_cast<float>(range[0]);
                    crop.max_range = static_cast<float>(range[1]);
                  });
@@ -196,10 +199,36 @@ void add_crop_options(CLI::App& app, Crop& crop) {
                  });
 }
 
+namespace {
+
+bool is_given(const CLI::App& app, const char* option) {
+  const CLI::Option* found = app.get_option_no_throw(option);
+  return found != nullptr && found->count() > 0;
+}
+
+/// Refuses two options of which one would count for nothing.
+void require_one(const CLI::App& app, const char* one, const char* other) {
+  if (!is_given(app, one) || !is_given(app, other)) return;
+  throw CLI::ValidationError(one, fmt::format("cannot go with {}; leave one of them out", other));
+}
+
+}  // namespace
+
 void require_matching(const CLI::App& app, const EncoderOptions& options) {
+  constexpr std::array kQualities{"--lossless", "--level", "--max-error", "--target-bytes",
+                                  "--params"};
+  for (std::size_t i = 0; i < kQualities.size(); ++i) {
+    for (std::size_t k = i + 1; k < kQualities.size(); ++k) {
+      require_one(app, kQualities[i], kQualities[k]);
+    }
+  }
+  require_one(app, "--lossless", "--intensity-step");
+  if (options.beam.fields == Fields::xyz && is_given(app, "--intensity-step")) {
+    throw CLI::ValidationError("--intensity-step",
+                               "--fields xyz keeps no intensities; leave one of them out");
+  }
   const auto refuse = [&](const char* option, std::string_view codec) {
-    const CLI::Option* given = app.get_option_no_throw(option);
-    if (given == nullptr || given->count() == 0) return;
+    if (!is_given(app, option)) return;
     throw CLI::ValidationError(option, fmt::format("belongs to codec {}; leave it out, or choose "
                                                    "that codec with --codec {}",
                                                    codec, codec));

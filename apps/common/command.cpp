@@ -5,13 +5,16 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <exception>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/interruption.hpp"
@@ -66,11 +69,71 @@ CLI::App* called_bare(CLI::App& app, int argc, char** argv) {
   return argc == 2 ? find_subcommand(app, argv[1]) : nullptr;
 }
 
+/// What the stars of a pattern stand for in a text, up to four; none where it does not match.
+std::optional<std::array<std::string_view, 4>> match(std::string_view pattern,
+                                                     std::string_view text) {
+  std::array<std::string_view, 4> found{};
+  for (std::string_view& part : found) {
+    const std::size_t star = pattern.find('*');
+    if (text.substr(0, star) != pattern.substr(0, star)) return std::nullopt;
+    if (star == std::string_view::npos) return found;
+    text.remove_prefix(star);
+    pattern.remove_prefix(star + 1);
+    const std::string_view next = pattern.substr(0, pattern.find('*'));
+    const bool is_last = next.size() == pattern.size();
+    const std::size_t end = is_last && next.empty() ? text.size() : text.find(next);
+    if (end == std::string_view::npos) return std::nullopt;
+    part = text.substr(0, end);
+    text.remove_prefix(end);
+  }
+  return text == pattern ? std::optional(found) : std::nullopt;
+}
+
+/// What the command line's library says, in the words of the rest of the tool.
+std::string in_plain_words(const std::string& message) {
+  struct Rewording {
+    std::string_view theirs;
+    std::string_view ours;
+  };
+  constexpr std::array<Rewording, 9> kRewordings{{
+      {"A subcommand is required", "a command comes first, as in `sweepcast info FILE`"},
+      {"*: At least * required but received *",
+       "{}: takes {} values, separated by commas, and is given {}"},
+      {"* excludes *", "{}: cannot go with {}; leave one of them out"},
+      {"*: 1 required * missing", "{}: needs a value, {}"},
+      {"*: At Most 1 required but received *", "{}: is given {} times; give it once"},
+      {"*: Value * not in range * to *", "{}: {} is not a whole number from {} to {}"},
+      {"*: * not in {*}", "{}: {} is not one of {}"},
+      {"* is required", "{} is missing; add it"},
+      {"Could not convert: * = *", "{}: {} is not a value that it takes"},
+  }};
+  for (const auto& [theirs, ours] : kRewordings) {
+    if (const auto parts = match(theirs, message)) {
+      const auto& [first, second, third, fourth] = *parts;
+      return fmt::format(fmt::runtime(ours), first, second, third, fourth);
+    }
+  }
+  return message;
+}
+
+/// Words that the command does not take; empty where there are none.
+std::string unexpected_words(const CLI::App& app) {
+  std::string words;
+  for (const CLI::App* sub : app.get_subcommands()) {
+    for (const std::string& word : sub->remaining()) words += " " + word;
+  }
+  if (words.empty()) return words;
+  return "not expected:" + words + "; check the spelling, or leave it out";
+}
+
 /// Says what is wrong with the command line, and where to read how it should be.
 int refuse(const CLI::App& app, const CLI::ParseError& error) {
   std::string command = app.get_name();
   for (const CLI::App* sub : app.get_subcommands()) command += " " + sub->get_name();
-  print_error(fmt::format("{}; see `{} --help`", error.what(), command));
+  const bool is_extra = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError);
+  std::string message = is_extra ? unexpected_words(app) : "";
+  if (message.empty()) message = in_plain_words(error.what());
+  print_error(fmt::format("{}; see `{} --help`", message, command));
   return 2;
 }
 
@@ -161,6 +224,10 @@ int run(CLI::App& app, const Command& command, int argc, char** argv) {
 
 void print_error(std::string_view message) {
   say("error", message);
+}
+
+void print_warning(std::string_view message) {
+  say("warning", message);
 }
 
 void print_note(std::string_view message) {

@@ -22,6 +22,9 @@ using Command = std::function<Status()>;
 /// Prints "sweepcast: error: MESSAGE" to standard error, for a command that goes on after it.
 void print_error(std::string_view message);
 
+/// Prints "sweepcast: warning: MESSAGE" to standard error: done as told, but hardly as meant.
+void print_warning(std::string_view message);
+
 /// Prints "sweepcast: note: MESSAGE" to standard error: worth knowing, but no failure.
 void print_note(std::string_view message);
 

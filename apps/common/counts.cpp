@@ -34,6 +34,20 @@ CountSums sums_of(const SweepCounts& counts) {
   return sums;
 }
 
+void LayerSums::add(const LayerCounts& layers) {
+  ++frames;
+  if (layers.missing() > 0) ++frames_cut;
+  made += static_cast<std::uint64_t>(layers.made);
+  missing += static_cast<std::uint64_t>(layers.missing());
+}
+
+std::string LayerSums::text() const {
+  if (missing == 0) return "";
+  return fmt::format(
+      "{} of {} lack layers, {} of {} in all: a link cut them, and they decode coarser", frames_cut,
+      count_of(frames, "frame"), missing, made);
+}
+
 bool add_up(const SweepCounts& counts) {
   std::uint64_t gone = 0;
   for (std::size_t i = 1; i < kCountFields.size(); ++i) gone += counts.*kCountFields[i].value;

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "codec/frame_edit.hpp"
 #include "sweepcast/frame.hpp"
 
 namespace sweepcast::app {
@@ -37,6 +38,7 @@ class CountSums {
   void add(const SweepCounts& counts);
   [[nodiscard]] std::uint64_t points_in() const { return sums_[0]; }
   [[nodiscard]] std::uint64_t points_coded() const { return sums_[1]; }
+  [[nodiscard]] std::uint64_t thinned() const { return sums_.back(); }
 
   /// Why points are missing, as in "3 not finite, 12 out of view"; "none" where nothing is missing.
   [[nodiscard]] std::string losses() const;
@@ -49,6 +51,18 @@ class CountSums {
 
 /// The sums of a single sweep.
 [[nodiscard]] CountSums sums_of(const SweepCounts& counts);
+
+/// Layers that a link cut off, over the frames of a file.
+struct LayerSums {
+  std::uint64_t frames = 0;
+  std::uint64_t frames_cut = 0;  ///< of these, with fewer layers than the encoder made
+  std::uint64_t made = 0;        ///< layers, by the encoder
+  std::uint64_t missing = 0;     ///< of these
+
+  void add(const LayerCounts& layers);
+  /// "3 of 10 frames lack layers, 7 of 50 in all: ..."; empty where none is missing.
+  [[nodiscard]] std::string text() const;
+};
 
 /// True where `points_in` is the sum of all the others, as it must be.
 [[nodiscard]] bool add_up(const SweepCounts& counts);

@@ -110,6 +110,10 @@ Result<std::vector<fs::path>> collect_clouds(const std::vector<std::string>& inp
   for (const fs::path& cloud : all) {
     const auto [other, is_new] = by_name.emplace(cloud.stem().string(), cloud);
     if (is_new) continue;
+    std::error_code ignored;
+    if (fs::equivalent(cloud, other->second, ignored)) {
+      return invalid(cloud, "is given twice; name it once");
+    }
     return invalid(cloud, "has the same base name as " + other->second.string() +
                               ", so that one would overwrite the other when decoded; rename one, "
                               "or encode them apart");

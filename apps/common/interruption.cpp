@@ -11,15 +11,19 @@
 namespace sweepcast::app {
 namespace {
 
-/// The signals to wait for: those that nobody made us ignore, as nohup does.
+/// Whether somebody made us ignore this signal, as nohup does with SIGHUP.
+bool is_ignored(int signal) {
+  struct sigaction action {};
+  return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
+/// The signals to wait for: those that are not ignored; and SIGINT, which a shell makes the
+/// programs ignore that a script starts with &, and which may be meant for them all the same.
 sigset_t ending_signals() {
   sigset_t set;
   sigemptyset(&set);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    struct sigaction action {};
-    if (sigaction(signal, nullptr, &action) == 0 && action.sa_handler != SIG_IGN) {
-      sigaddset(&set, signal);
-    }
+    if (signal == SIGINT || !is_ignored(signal)) sigaddset(&set, signal);
   }
   return set;
 }
@@ -50,7 +54,7 @@ bool take_as_request() {
 /// A thread of its own, and no signal handler, may lock and allocate as removing needs.
 [[noreturn]] void wait_for_end(const sigset_t& signals) {
   int signal = 0;
-  while (sigwait(&signals, &signal) != 0 || take_as_request()) {
+  while (sigwait(&signals, &signal) != 0 || take_as_request() || is_ignored(signal)) {
   }
   remove_unfinished();
   std::signal(signal, SIG_DFL);

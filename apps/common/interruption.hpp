@@ -12,7 +12,8 @@ namespace sweepcast::app {
 void remove_unfinished_on_signals();
 
 /// From here on the first such signal ends nothing: `stop_requested` says that it came, for a
-/// command that goes on until it is told to stop. A second one ends the program as above.
+/// command that goes on until it is told to stop; SIGINT does so even where it is ignored. A second
+/// one ends the program as above.
 void stop_on_signals();
 [[nodiscard]] bool stop_requested();
 /// Waits until then, or until there is a signal. True where there is one.

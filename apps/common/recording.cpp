@@ -3,7 +3,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "common/counts.hpp"
 
@@ -34,6 +36,21 @@ Status check_complete(const std::filesystem::path& path, const SweepReader& read
                           path.string(), count_of(reader.entries().size(), "whole frame")));
 }
 
+Status check_layered(const std::filesystem::path& path, SweepReader& reader,
+                     const std::string& options) {
+  std::vector<std::byte> frame;
+  FrameHeader header;
+  for (std::size_t i = 0; i < reader.entries().size(); ++i) {
+    if (!reader.read(i, frame) || !parse_frame_header(frame, header)) continue;  // named later
+    if (header.codec == CodecId::beam) return {};
+    return fail(ErrorCode::invalid_argument,
+                fmt::format("{}: is of codec {}, which has neither layers nor points to fill in; "
+                            "leave {} out",
+                            path.string(), name(header.codec), options));
+  }
+  return {};
+}
+
 std::string frame_error(const std::filesystem::path& path, const SweepReader& reader, std::size_t i,
                         const std::string& what) {
   const std::string& name = reader.entries()[i].name;
@@ -46,15 +63,20 @@ std::string printable(std::string text) {
   return text;
 }
 
-Result<std::string> SweepNames::next(const SweepEntry& entry, const FrameHeader& header) {
+Result<std::string> source_name(const SweepEntry& entry, const FrameHeader& header) {
   if (!is_plain_file_name(entry.name)) {
     return fail(ErrorCode::corrupt,
                 "its name is not a plain file name, so the file is damaged or was made to do "
                 "harm; get it again from a source that you trust");
   }
-  const std::string base = entry.name.empty() ? fmt::format("{:06}", header.sequence) : entry.name;
-  std::string name = base;
-  for (int i = 2; !used_.insert(name).second; ++i) name = fmt::format("{}-{}", base, i);
+  return entry.name.empty() ? fmt::format("{:06}", header.sequence) : entry.name;
+}
+
+Result<std::string> SweepNames::next(const SweepEntry& entry, const FrameHeader& header) {
+  const auto base = source_name(entry, header);
+  if (!base) return tl::unexpected(base.error());
+  std::string name = *base;
+  for (int i = 2; !used_.insert(name).second; ++i) name = fmt::format("{}-{}", *base, i);
   return name;
 }
 

@@ -17,6 +17,11 @@ namespace sweepcast::app {
 /// whole frame that belong to no frame: what they were is lost.
 [[nodiscard]] Status check_complete(const std::filesystem::path& path, const SweepReader& reader);
 
+/// Whether options that concern layers and points to fill in mean anything to the file's frames:
+/// its first sound one tells the codec. Error invalid_argument, which says to leave `options` out.
+[[nodiscard]] Status check_layered(const std::filesystem::path& path, SweepReader& reader,
+                                   const std::string& options);
+
 /// "FILE: frame 3 (000012): WHAT".
 [[nodiscard]] std::string frame_error(const std::filesystem::path& path, const SweepReader& reader,
                                       std::size_t i, const std::string& what);
@@ -27,12 +32,15 @@ namespace sweepcast::app {
 /// Whether a sweep's name can become a file's: no way out of a folder, no control character.
 [[nodiscard]] bool is_plain_file_name(const std::string& name);
 
+/// The base name of the file that a sweep was made from: the entry's own name; where it is empty,
+/// the frame's sequence number with six digits.
+/// Error corrupt: the name could lead out of the folder, or holds a control character.
+[[nodiscard]] Result<std::string> source_name(const SweepEntry& entry, const FrameHeader& header);
+
 /// Names the sweeps of a file so that each can become a file of its own in one folder.
 class SweepNames {
  public:
-  /// The entry's own name; where it is empty, the frame's sequence number with six digits. A name
-  /// that came before gets "-2", "-3" and so on behind it.
-  /// Error corrupt: the name could lead out of the folder, or holds a control character.
+  /// `source_name`; one that came before gets "-2", "-3" and so on behind it. Errors: the same.
   [[nodiscard]] Result<std::string> next(const SweepEntry& entry, const FrameHeader& header);
 
  private:

@@ -1,7 +1,9 @@
 #include "common/validators.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdint>
 #include <string>
@@ -24,7 +26,7 @@ CLI::Validator number_between(double min, double max) {
     double value = 0.0;
     const bool in_range = parse(text, value) && value >= min && value <= max;
     return in_range ? std::string()
-                    : fmt::format("{} is not between {:g} and {:g}", text, min, max);
+                    : fmt::format("{} is not a number from {:.10g} to {:.10g}", text, min, max);
   };
   return {check, ""};
 }
@@ -34,6 +36,16 @@ CLI::Validator whole_number() {
     std::uint64_t value = 0;
     return parse(text, value) ? std::string()
                               : fmt::format("{} is not a whole number from 0 to 2^64 - 1", text);
+  };
+  return {check, ""};
+}
+
+CLI::Validator items_of(const std::vector<std::string>& words) {
+  const auto check = [words](const std::string& text) {
+    const bool is_known = std::find(words.begin(), words.end(), text) != words.end();
+    return is_known ? std::string()
+                    : fmt::format("\"{}\" is not one of {}; commas separate several", text,
+                                  fmt::join(words, ", "));
   };
   return {check, ""};
 }

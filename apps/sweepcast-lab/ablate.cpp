@@ -171,6 +171,19 @@ Status ablate(const AblateCommand& options) {
   return {};
 }
 
+/// Refuses options that the tables of the chosen codec do not depend on.
+void require_of_codec(const CLI::App& app, bool is_beam) {
+  const std::vector<const char*> others =
+      is_beam ? std::vector{"--params", "--threshold", "--quantiser", "--block", "--region"}
+              : std::vector{"--max-error"};
+  for (const char* option : others) {
+    if (app.get_option(option)->count() == 0) continue;
+    const char* codec = is_beam ? "rcpcc" : "beam";
+    throw CLI::ValidationError(
+        option, fmt::format("goes with --codec {}; leave it out, or choose that codec", codec));
+  }
+}
+
 }  // namespace
 
 void add_ablate(CLI::App& app, Command& command) {
@@ -201,13 +214,14 @@ void add_ablate(CLI::App& app, Command& command) {
       ->check(CLI::IsMember({4, 8, 16, 32}));
   sub->add_flag("--json", options->json, "Print the tables as JSON");
   sub->footer("Example: sweepcast ablate drive --quantiser truncate");
-  sub->callback([options, &command] {
+  sub->callback([options, sub, &command] {
+    const bool is_beam = options->codec == "beam";
+    require_of_codec(*sub, is_beam);
     EncoderOptions encoder;
     encoder.codec = CodecId::rcpcc;
     encoder.rcpcc = base_of(*options);
     require_valid(encoder);
-    const bool beam = options->codec == "beam";
-    command = [options, beam] { return beam ? ablate_stages(*options) : ablate(*options); };
+    command = [options, is_beam] { return is_beam ? ablate_stages(*options) : ablate(*options); };
   });
 }
 

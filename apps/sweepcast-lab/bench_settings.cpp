@@ -185,7 +185,8 @@ void add_beam_options(CLI::App& app, BenchSettings& options) {
   app.add_option("--effort", options.efforts, "Efforts of beam: fast, default, best [default]")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->check(CLI::IsMember({"fast", "default", "best"}));
+      ->check(items_of({"fast", "default", "best"}))
+      ->type_name("NAME,...");
   app.add_flag("--fill", options.fill,
                "Measure settings of beam that leave points out with these filled in as well");
 }
@@ -233,13 +234,15 @@ void add_bench_settings(CLI::App& app, BenchSettings& settings) {
   app.add_option("--codec", settings.codecs, "Our codecs to measure: rcpcc, beam [both]")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->check(CLI::IsMember({"rcpcc", "beam"}));
+      ->check(items_of({"rcpcc", "beam"}))
+      ->type_name("NAME,...");
   app.add_option("--levels", settings.levels,
                  fmt::format("Levels of the codecs [rcpcc: all, and --params {}; beam: none]",
                              kPaperSetting))
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->check(CLI::IsMember({"0", "1", "2", "3", "4", "5", "all"}));
+      ->check(items_of({"0", "1", "2", "3", "4", "5", "all"}))
+      ->type_name("0..5,...|all");
   app.add_option("--params", settings.params,
                  "A setting of rcpcc: steps in degrees, threshold and quantiser step in metres; "
                  "may be repeated")
@@ -254,7 +257,8 @@ void add_bench_settings(CLI::App& app, BenchSettings& settings) {
                  "--max-error the coarsest step that keeps every point within)")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->check(CLI::IsMember({"draco", "draco-bound"}));
+      ->check(items_of({"draco", "draco-bound"}))
+      ->type_name("NAME,...");
 }
 
 }  // namespace sweepcast::app

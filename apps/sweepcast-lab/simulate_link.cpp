@@ -31,6 +31,11 @@ using lab::StreamSummary;
 const std::vector<std::string> kAllStrategies{"paper", "fixed:0", "bola",
                                               "mpc",   "budget",  "offline"};
 
+/// What `--strategy` takes.
+const std::vector<std::string> kStrategyNames{"budget",  "paper",   "bola",    "mpc",
+                                              "fixed:0", "fixed:1", "fixed:2", "fixed:3",
+                                              "fixed:4", "fixed:5", "offline", "all"};
+
 struct SimulateLinkCommand {
   std::vector<std::string> inputs;
   std::string trace = "paper";
@@ -138,7 +143,8 @@ Status simulate_link(const SimulateLinkCommand& options) {
   lab::StreamComparison comparison;
   comparison.codec = options.codec == "rcpcc" ? CodecId::rcpcc : CodecId::beam;
   comparison.session = session_of(options, *trace);
-  const bool all = options.strategies == std::vector<std::string>{"all"};
+  const auto& chosen = options.strategies;
+  const bool all = std::find(chosen.begin(), chosen.end(), "all") != chosen.end();
   comparison.strategies = all ? kAllStrategies : options.strategies;
   Progress progress("encoding", sweeps->size());
   comparison.on_encoded = [&progress](std::string_view name) { progress.step(name); };
@@ -196,7 +202,8 @@ void add_simulate_link(CLI::App& app, Command& command) {
   sub->add_option("--strategy", options->strategies,
                   "budget, paper, bola, mpc, fixed:0 to fixed:5, offline; several, or all [all]")
       ->delimiter(',')
-      ->type_name("NAME");
+      ->check(items_of(kStrategyNames))
+      ->type_name("NAME,...");
   sub->add_option("--duration", options->duration_s, "Length of the drive [the trace's]")
       ->check(number_between(0.1, 86'400.0))
       ->type_name("SECONDS");

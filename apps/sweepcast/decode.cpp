@@ -108,6 +108,10 @@ void report_text(const DecodeOptions& options, const std::vector<Decoded>& frame
 Status decode(const DecodeOptions& options) {
   auto reader = SweepReader::open(options.input);
   if (!reader) return tl::unexpected(reader.error());
+  if (options.fill || options.layers < DecoderOptions{}.max_layers) {
+    Status layered = check_layered(options.input, *reader, "--layers and --fill");
+    if (!layered) return layered;
+  }
   if (Status made = make_folder(options.folder); !made) return made;
   const CloudFormat format = *cloud_format_of("x." + options.format);
 

@@ -13,6 +13,7 @@
 #include "common/codec_options.hpp"
 #include "common/counts.hpp"
 #include "common/cpu_time.hpp"
+#include "common/input_checks.hpp"
 #include "common/inputs.hpp"
 #include "common/progress.hpp"
 #include "common/recording.hpp"
@@ -45,13 +46,22 @@ struct Encoded {
   double encode_ms = 0.0;
 };
 
-/// Refuses an output that is named like an input: replacing a cloud is hardly what was meant.
+/// Refuses an output that is named like an input, and one that would replace a file of another
+/// kind: that is hardly what was meant.
 Status check_output(const fs::path& output) {
-  if (!cloud_format_of(output)) return {};
+  if (cloud_format_of(output)) {
+    return fail(ErrorCode::invalid_argument,
+                output.string() +
+                    ": names a cloud, and the output is a .sweep file; end the output's name in "
+                    ".sweep");
+  }
+  std::error_code ignored;
+  const bool replaces = fs::is_regular_file(output, ignored) &&
+                        fs::file_size(output, ignored) > 0 && output.extension() != ".sweep";
+  if (!replaces || SweepReader::open(output)) return {};
   return fail(ErrorCode::invalid_argument,
               output.string() +
-                  ": names a cloud, and the output is a .sweep file; end the output's name in "
-                  ".sweep");
+                  ": is there and is no .sweep file; remove it, or give the output another name");
 }
 
 /// The number of the first sweep to write: recordings go on counting.
@@ -74,25 +84,41 @@ Status check_names(const std::vector<fs::path>& inputs) {
   return {};
 }
 
-Result<Encoded> encode_one(const fs::path& input, const SweepInfo& info, PointCloud& cloud,
-                           Encoder& encoder, SweepWriter& writer) {
-  if (Status read = read_cloud(input, cloud); !read) return tl::unexpected(read.error());
+/// What all inputs go through.
+struct Workspace {
+  PointCloud cloud;
+  std::vector<std::string> skipped_fields;
+  InputChecks checks;
+  Encoder encoder;
+  SweepWriter writer;
+};
+
+Result<Encoded> encode_one(const fs::path& input, const SweepInfo& info, double intensity_step,
+                           Workspace& work) {
+  Status read = read_cloud(input, work.cloud, &work.skipped_fields);
+  if (!read) return tl::unexpected(read.error());
+  work.checks.add(input, work.cloud, work.skipped_fields);
+  if (Status step = check_intensity_step(work.cloud, intensity_step); !step) {
+    return fail(step.error().code, fmt::format("{}: {}", input.string(), step.error().message));
+  }
   const double begin = cpu_time_ms();
-  const auto frame = encoder.encode(cloud, info);
+  const auto frame = work.encoder.encode(work.cloud, info);
   const double end = cpu_time_ms();
   if (!frame) {
     return fail(frame.error().code, fmt::format("{}: {}", input.string(), frame.error().message));
   }
-  Encoded encoded{input.stem().string(), encoder.last_counts(), frame->size(), end - begin};
-  if (Status written = writer.append(*frame, encoded.name); !written) {
+  Encoded encoded{input.stem().string(), work.encoder.last_counts(), frame->size(), end - begin};
+  if (Status written = work.writer.append(*frame, encoded.name); !written) {
     return tl::unexpected(written.error());
   }
   return encoded;
 }
 
-void report_json(const std::vector<Encoded>& frames, std::uint64_t file_bytes) {
+void report_json(const std::vector<Encoded>& frames, const Workspace& work) {
   nlohmann::ordered_json report{{"frames", nlohmann::ordered_json::array()},
-                                {"file_bytes", file_bytes}};
+                                {"file_bytes", work.writer.size()},
+                                {"dropped_fields", work.checks.dropped_fields()},
+                                {"warnings", work.checks.warnings()}};
   for (const Encoded& frame : frames) {
     report["frames"].push_back({{"name", frame.name},
                                 {"points_in", frame.counts.points_in},
@@ -137,26 +163,29 @@ Status encode(const EncodeOptions& options) {
   auto writer = SweepWriter::open(options.output, mode);
   if (!writer) return tl::unexpected(writer.error());
 
+  Workspace work{{}, {}, {}, std::move(*encoder), std::move(*writer)};
   std::vector<Encoded> frames;
-  PointCloud cloud;
   Progress progress("encoding", inputs->size());
   for (const fs::path& input : *inputs) {
     const std::uint64_t sequence = *first + frames.size();
     const double stamp = std::round(static_cast<double>(sequence) * 1e9 / options.rate_hz);
     const SweepInfo info{sequence, static_cast<std::int64_t>(stamp), options.sensor};
-    auto encoded = encode_one(input, info, cloud, *encoder, *writer);
+    // Only the first sweep: a later one that is dark all over must not end a recording.
+    const double step = frames.empty() ? options.encoder.beam.intensity_step : 0.0;
+    auto encoded = encode_one(input, info, step, work);
     if (!encoded) return tl::unexpected(encoded.error());
     frames.push_back(std::move(*encoded));
     progress.step(input.filename().string());
   }
-  if (Status closed = writer->close(); !closed) return closed;
+  if (Status closed = work.writer.close(); !closed) return closed;
+  for (const std::string& warning : work.checks.warnings()) print_warning(warning);
   if (options.json) {
-    report_json(frames, writer->size());
+    report_json(frames, work);
   } else {
     const EncoderOptions& encoder_options = options.encoder;
     const bool geometry_only =
         encoder_options.codec == CodecId::rcpcc || encoder_options.beam.fields == Fields::xyz;
-    report_text(options.output, frames, writer->size(), geometry_only);
+    report_text(options.output, frames, work.writer.size(), geometry_only);
   }
   return {};
 }

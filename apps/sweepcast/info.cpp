@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "codec/frame_edit.hpp"
 #include "common/counts.hpp"
 #include "common/recording.hpp"
 #include "sweepcast/commands.hpp"
@@ -31,6 +32,7 @@ struct InfoOptions {
 struct Summary {
   std::size_t frames = 0;
   CountSums counts;
+  LayerSums layers;
   std::uint64_t frame_bytes = 0;
   std::map<std::string, std::uint64_t> part_bytes;  ///< "header" and each part's name
   std::map<std::string, std::size_t> codecs;        ///< frames of each
@@ -45,16 +47,18 @@ std::map<std::string, std::uint64_t> bytes_by_part(const FrameHeader& header) {
   return bytes;
 }
 
-void add(Summary& summary, const FrameHeader& header) {
+void add(Summary& summary, const FrameHeader& header, const LayerCounts& layers) {
   ++summary.frames;
   summary.counts.add(header.counts);
+  summary.layers.add(layers);
   summary.frame_bytes += header.frame_size;
   for (const auto& [part, bytes] : bytes_by_part(header)) summary.part_bytes[part] += bytes;
   ++summary.codecs[std::string(name(header.codec))];
   ++summary.sensors[header.sensor];
 }
 
-ordered_json frame_json(const SweepEntry& entry, const FrameHeader& header) {
+ordered_json frame_json(const SweepEntry& entry, const FrameHeader& header,
+                        const LayerCounts& layers) {
   return {{"name", entry.name},
           {"sequence", header.sequence},
           {"stamp_ns", header.stamp_ns},
@@ -63,6 +67,8 @@ ordered_json frame_json(const SweepEntry& entry, const FrameHeader& header) {
           {"version", header.version},
           {"offset", entry.offset},
           {"bytes", header.frame_size},
+          {"layers", layers.there},
+          {"layers_missing", layers.missing()},
           {"parts", bytes_by_part(header)},
           {"counts", sums_of(header.counts).json()}};
 }
@@ -85,6 +91,7 @@ void report_text(const InfoOptions& options, const SweepReader& reader, const Su
   fmt::print("  codec {}, sensor {}\n", list(summary.codecs), list(summary.sensors));
   fmt::print("  {} points in, {} coded; not coded: {}\n", summary.counts.points_in(),
              summary.counts.points_coded(), summary.counts.losses());
+  if (const std::string text = summary.layers.text(); !text.empty()) fmt::print("  {}\n", text);
   const bool attributes = summary.part_bytes.count("attributes") > 0;
   fmt::print("  {:.0f} bytes a frame; ratio {:.1f} (16 B/point, geometry {})\n",
              static_cast<double>(summary.frame_bytes) / count,
@@ -96,10 +103,10 @@ void report_text(const InfoOptions& options, const SweepReader& reader, const Su
   }
 }
 
-void print_frame(const SweepEntry& entry, const FrameHeader& header) {
-  fmt::print("{:>8} {:>20} {:>9} {:>9} {:>9}  {}\n", header.sequence, header.stamp_ns,
+void print_frame(const SweepEntry& entry, const FrameHeader& header, const LayerCounts& layers) {
+  fmt::print("{:>8} {:>20} {:>9} {:>9} {:>9} {:>6}  {}\n", header.sequence, header.stamp_ns,
              header.counts.points_in, header.counts.points_coded, header.frame_size,
-             printable(entry.name));
+             fmt::format("{}/{}", layers.there, layers.made), printable(entry.name));
 }
 
 Status info(const InfoOptions& options) {
@@ -111,23 +118,26 @@ Status info(const InfoOptions& options) {
   std::vector<std::byte> bytes;
   FrameHeader header;
   if (options.frames && !options.json) {
-    fmt::print("{:>8} {:>20} {:>9} {:>9} {:>9}  {}\n", "sequence", "stamp_ns", "in", "coded",
-               "bytes", "name");
+    fmt::print("{:>8} {:>20} {:>9} {:>9} {:>9} {:>6}  {}\n", "sequence", "stamp_ns", "in", "coded",
+               "bytes", "layers", "name");
   }
   for (std::size_t i = 0; i < reader->entries().size(); ++i) {
     const SweepEntry& entry = reader->entries()[i];
     Status read = reader->read(i, bytes);
     if (read) read = parse_frame_header(bytes, header);
+    Result<LayerCounts> layers;
+    if (read) layers = count_layers(bytes, header);
+    if (!layers) read = tl::unexpected(layers.error());
     if (!read) {
       print_error(frame_error(options.input, *reader, i, read.error().message));
       ++damaged;
       continue;
     }
-    add(summary, header);
+    add(summary, header, *layers);
     if (options.json) {
-      frames.push_back(frame_json(entry, header));
+      frames.push_back(frame_json(entry, header, *layers));
     } else if (options.frames) {
-      print_frame(entry, header);
+      print_frame(entry, header, *layers);
     }
   }
   if (options.json) {
@@ -137,6 +147,8 @@ Status info(const InfoOptions& options) {
                 {"frame_bytes", summary.frame_bytes},
                 {"parts", summary.part_bytes},
                 {"counts", summary.counts.json()},
+                {"frames_cut", summary.layers.frames_cut},
+                {"layers_missing", summary.layers.missing},
                 {"damaged", damaged},
                 {"frames", frames}});
   } else {

@@ -29,6 +29,16 @@ std::vector<std::size_t> layer_ends(const FrameHeader& header) {
   return ends;
 }
 
+Result<LayerCounts> count_layers(std::span<const std::byte> frame, const FrameHeader& header) {
+  if (header.codec != CodecId::beam) return LayerCounts{};
+  const auto grid = checked_part(frame, header, static_cast<std::uint8_t>(beam::Part::grid));
+  if (!grid) return tl::unexpected(grid.error());
+  const LayerCounts counts{static_cast<int>(layer_ends(header).size()),
+                           beam::layers_of_grid(*grid).value_or(0)};
+  if (counts.missing() >= 0) return counts;
+  return fail(ErrorCode::corrupt, "the frame's grid cannot be right");
+}
+
 Result<std::span<const std::byte>> model_part(std::span<const std::byte> frame,
                                               const FrameHeader& header) {
   if (header.codec != CodecId::beam || !has_part(header, kModel)) {

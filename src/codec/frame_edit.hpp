@@ -15,6 +15,18 @@ namespace sweepcast {
 /// the last layer (exact coordinates, order) belongs to it. A codec without layers has one.
 [[nodiscard]] std::vector<std::size_t> layer_ends(const FrameHeader& header);
 
+/// Layers of a frame.
+struct LayerCounts {
+  int there = 1;  ///< in the frame
+  int made = 1;   ///< that the encoder made; more than are there where a link cut the frame
+
+  [[nodiscard]] int missing() const noexcept { return made - there; }
+};
+
+/// Counts the layers of a whole frame. Error corrupt: what the frame says of them is damaged.
+[[nodiscard]] Result<LayerCounts> count_layers(std::span<const std::byte> frame,
+                                               const FrameHeader& header);
+
 /// The sensor's model in a frame; empty where it has none or is cut before its end.
 /// Error corrupt: the model does not match its checksum.
 [[nodiscard]] Result<std::span<const std::byte>> model_part(std::span<const std::byte> frame,

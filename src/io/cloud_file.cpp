@@ -15,14 +15,15 @@ namespace {
 /// A file is read as a whole; this is its largest size.
 constexpr std::size_t kMaxFileSize = std::size_t{1} << 30;
 
-Status parse(std::span<const std::byte> bytes, CloudFormat format, PointCloud& cloud) {
+Status parse(std::span<const std::byte> bytes, CloudFormat format, PointCloud& cloud,
+             std::vector<std::string>* skipped) {
   switch (format) {
     case CloudFormat::bin:
       return parse_bin(bytes, cloud);
     case CloudFormat::pcd:
-      return parse_pcd(bytes, cloud);
+      return parse_pcd(bytes, cloud, skipped);
     case CloudFormat::ply:
-      return parse_ply(bytes, cloud);
+      return parse_ply(bytes, cloud, skipped);
   }
   return fail(ErrorCode::invalid_argument, "no such cloud format");
 }
@@ -75,8 +76,10 @@ std::optional<CloudFormat> cloud_format_of(const std::filesystem::path& path) {
   return std::nullopt;
 }
 
-Status read_cloud(const std::filesystem::path& path, PointCloud& cloud) {
+Status read_cloud(const std::filesystem::path& path, PointCloud& cloud,
+                  std::vector<std::string>* skipped_fields) {
   cloud.clear();
+  if (skipped_fields != nullptr) skipped_fields->clear();
   const auto format = cloud_format_of(path);
   if (!format) {
     return fail(ErrorCode::unsupported,
@@ -84,7 +87,7 @@ Status read_cloud(const std::filesystem::path& path, PointCloud& cloud) {
   }
   std::vector<std::byte> bytes;
   if (Status status = read_file(path, kMaxFileSize, bytes); !status) return status;
-  Status status = parse(bytes, *format, cloud);
+  Status status = parse(bytes, *format, cloud, skipped_fields);
   if (status) return status;
   cloud.clear();
   return fail(status.error().code, path.string() + ": " + status.error().message);

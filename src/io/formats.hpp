@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "sweepcast/cloud.hpp"
@@ -19,12 +20,16 @@ namespace sweepcast {
 /// PCD 0.7: all encodings, field types and counts. The viewpoint is ignored, an organised cloud
 /// becomes a list. What follows the points of a binary file is ignored.
 /// Errors: corrupt, truncated, unsupported (not a PCD, no x y z), limit.
-[[nodiscard]] Status parse_pcd(std::span<const std::byte> bytes, PointCloud& cloud);
+/// `skipped`: see `read_cloud`.
+[[nodiscard]] Status parse_pcd(std::span<const std::byte> bytes, PointCloud& cloud,
+                               std::vector<std::string>* skipped = nullptr);
 
 /// PLY 1.0: all encodings; the element "vertex" wherever it stands, other elements and lists are
 /// passed over. What follows the vertices is ignored.
 /// Errors: corrupt, truncated, unsupported (not a PLY, no vertex, no x y z), limit.
-[[nodiscard]] Status parse_ply(std::span<const std::byte> bytes, PointCloud& cloud);
+/// `skipped`: see `read_cloud`.
+[[nodiscard]] Status parse_ply(std::span<const std::byte> bytes, PointCloud& cloud,
+                               std::vector<std::string>* skipped = nullptr);
 
 /// Writers; `out` is cleared first. PCD and PLY have the fields that the cloud has. PLY's binary is
 /// little-endian, and it has no compressed form.

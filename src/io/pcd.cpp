@@ -261,10 +261,12 @@ Status parse_points(std::span<const std::byte> bytes, const PcdHeader& header, P
 
 }  // namespace
 
-Status parse_pcd(std::span<const std::byte> bytes, PointCloud& cloud) {
+Status parse_pcd(std::span<const std::byte> bytes, PointCloud& cloud,
+                 std::vector<std::string>* skipped) {
   if (bytes.empty()) return fail(ErrorCode::truncated, "is empty; copy or record it again");
   PcdHeader header;
   if (Status status = parse_header(bytes, header); !status) return status;
+  if (skipped != nullptr) *skipped = names_of_skipped(header.fields);
   Status status = parse_points(bytes, header, cloud);
   cloud.width = status ? header.width : 0;
   return status;

@@ -137,7 +137,8 @@ Status parse_header(std::span<const std::byte> bytes, PlyHeader& header) {
 
 }  // namespace
 
-Status parse_ply(std::span<const std::byte> bytes, PointCloud& cloud) {
+Status parse_ply(std::span<const std::byte> bytes, PointCloud& cloud,
+                 std::vector<std::string>* skipped) {
   if (bytes.empty()) return fail(ErrorCode::truncated, "is empty; copy or record it again");
   PlyHeader header;
   if (Status status = parse_header(bytes, header); !status) return status;
@@ -145,6 +146,7 @@ Status parse_ply(std::span<const std::byte> bytes, PointCloud& cloud) {
   for (PlyElement& element : header.elements) {
     if (element.name == "vertex") {
       if (Status status = assign_columns(element.fields); !status) return status;
+      if (skipped != nullptr) *skipped = names_of_skipped(element.fields);
       return read_records(reader, element.fields, element.count, cloud);
     }
     if (Status status = skip_records(reader, element.fields, element.count); !status) return status;

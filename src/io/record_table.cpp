@@ -239,6 +239,14 @@ Status assign_columns(std::vector<RecordField>& fields) {
   return {};
 }
 
+std::vector<std::string> names_of_skipped(const std::vector<RecordField>& fields) {
+  std::vector<std::string> names;
+  for (const RecordField& field : fields) {
+    if (field.column == CloudColumn::none && field.name != "_") names.push_back(field.name);
+  }
+  return names;
+}
+
 std::size_t record_size(const std::vector<RecordField>& fields) {
   std::size_t size = 0;
   for (const RecordField& field : fields) {

@@ -36,6 +36,10 @@ struct RecordField {
 /// Errors: unsupported (no x, y or z).
 [[nodiscard]] Status assign_columns(std::vector<RecordField>& fields);
 
+/// The names of the fields that no column takes; padding, named "_", is none. To be called after
+/// `assign_columns`.
+[[nodiscard]] std::vector<std::string> names_of_skipped(const std::vector<RecordField>& fields);
+
 /// Bytes of a record without lists.
 [[nodiscard]] std::size_t record_size(const std::vector<RecordField>& fields);
 

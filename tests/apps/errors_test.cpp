@@ -1,6 +1,8 @@
 // What the tool does when something is wrong: it says what and where, and nothing is lost.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "apps/tool_fixture.hpp"
 #include "sweepcast/encoder.hpp"
 #include "sweepcast/sweep_file.hpp"
@@ -72,6 +74,13 @@ TEST_F(ToolTest, WrongCommandLinesAreRefused) {
                                     "--target-bytes 0",
                                     "--effort slow",
                                     "--fields rgb",
+                                    "--lossless --max-error 0.02",
+                                    "--lossless --intensity-step 1",
+                                    "--lossless --level 1",
+                                    "--lossless --target-bytes 900",
+                                    "--fields xyz --intensity-step 1",
+                                    "--crop-range 8,2",
+                                    "--crop-range -1,2",
                                     "--max-error 0",
                                     "--max-error nan"}) {
     expect_failure(run("encode a.bin -o x.sweep " + options), 2, {"see `sweepcast encode --help`"});
@@ -88,7 +97,9 @@ TEST_F(ToolTest, WrongCommandLinesOfTheLabAreRefused) {
         "simulate -o drive --seed -1", "simulate -o drive --seed 18446744073709551616",
         "simulate -o drive --seed 1.5", "bench in --max-error nan", "bench in --max-error 0.05,0",
         "bench in --params nan,1,1,1", "bench in --codec mp3", "bench in --levels 0 --codec",
-        "ablate in --threshold nan", "ablate in --params 0.5", "ablate in --params 0,1"}) {
+        "ablate in --threshold nan", "ablate in --params 0.5", "ablate in --params 0,1",
+        "ablate in --max-error 0.1", "ablate in --codec beam --threshold 0.1",
+        "bench in --levels 0:1", "simulate-link --sweeps in --strategy all,best"}) {
     const std::string command = options.substr(0, options.find(' '));
     expect_failure(run(options), 2, {"see `sweepcast " + command + " --help`"});
   }
@@ -145,6 +156,54 @@ TEST_F(ToolTest, FilesOfTheSameSweepAreNamed) {
                  {"back: holds 000000.bin and 000000.pcd", "the same sweep; remove one kind"});
 }
 
+TEST_F(ToolTest, MessagesSpeakOfTheOptionsAsTheyAreTyped) {
+  write_bin("a.bin", make_room(0.0F));
+  const auto refused = [&](const std::string& options, const std::vector<std::string>& words) {
+    const Outcome outcome = run("encode a.bin -o x.sweep " + options);
+    expect_failure(outcome, 2, words);
+    EXPECT_EQ(outcome.err.find('_'), std::string::npos) << outcome.err;
+    EXPECT_EQ(outcome.err.find(".000000"), std::string::npos) << outcome.err;
+  };
+  refused("--max-error 0", {"--max-error: 0 is not a number from 0.001 to 2"});
+  refused("--intensity-step -1", {"--intensity-step: -1 is not a number from 0 to 1000000"});
+  refused("--lossless --target-bytes 900", {"--lossless: cannot go with --target-bytes"});
+  refused("--level 1 --max-error 1", {"--level: cannot go with --max-error"});
+  refused("--params 1,1,1,1 --level 2", {"--level: cannot go with --params"});
+  refused("--crop-range 8,2", {"--crop-range: MIN"});
+  refused("--level", {"--level: needs a value, 0..5"});
+  refused("--level 7", {"--level: 7 is not a whole number from 0 to 5"});
+  refused("--level 1 --level 2", {"--level: is given 2 times"});
+  refused("--codec rcpcc --block 5", {"--block: 5 is not one of 4,8,16"});
+  refused("--keep-order=maybe", {"--keep-order: maybe is not a value"});
+  refused("--lvl 3", {"not expected: --lvl; check the spelling"});
+  expect_failure(run("encode a.bin"), 2, {"--output is missing; add it"});
+}
+
+TEST_F(ToolTest, AnIntensityStepThatLeavesNothingIsRefused) {
+  auto room = make_room(0.0F);  // intensities as KITTI has them
+  for (std::size_t i = 0; i < room.size(); ++i) room[i][3] = 0.01F * static_cast<float>(i % 100);
+  write_bin("in/a.bin", room);
+  expect_failure(run("encode in -o x.sweep --intensity-step 2"), 1,
+                 {"in/a.bin: --intensity-step 2", "0 to 0.99", "choose a smaller step"});
+  EXPECT_EQ(list("."), std::vector<std::string>{"in"});
+  EXPECT_EQ(run("encode in -o x.sweep --intensity-step 0.1").exit_status, 0);
+}
+
+TEST_F(ToolTest, FieldsThatAreNotKeptAreNamedOnce) {
+  for (const std::string name : {"a", "b"}) {
+    write("in/" + name + ".pcd",
+          "VERSION 0.7\nFIELDS x y z rgb _ label\nSIZE 4 4 4 4 1 2\nTYPE F F F F U U\n"
+          "COUNT 1 1 1 1 4 1\nWIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA ascii\n"
+          "5 1 0 0 0 0 0 0 7\n6 1 0 0 0 0 0 0 7\n");
+  }
+  const Outcome outcome = run("encode in -o x.sweep --json");
+  ASSERT_EQ(outcome.exit_status, 0) << outcome.err;
+  EXPECT_EQ(outcome.json()["dropped_fields"], nlohmann::json({"rgb", "label"}));
+  EXPECT_EQ(outcome.err.find("sweepcast: warning: "), 0U) << outcome.err;
+  EXPECT_NE(outcome.err.find("rgb, label"), std::string::npos) << outcome.err;
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+}
+
 TEST_F(ToolTest, InputsThatAreNotThereOrNotClouds) {
   std::filesystem::create_directory(path("empty"));
   write("nothing.bin", "");
@@ -164,6 +223,9 @@ TEST_F(ToolTest, OutputsThatCannotBeWritten) {
   expect_failure(run("encode a.bin -o a.bin/x.sweep"), 1, {"a.bin/x.sweep"});
   expect_failure(run("encode a.bin -o no/folder/x.sweep"), 1, {"no/folder/x.sweep"});
   expect_failure(run("encode a.bin -o a.bin"), 1, {"a.bin", ".sweep"});
+  write("notes.txt", "not to be lost");
+  expect_failure(run("encode a.bin -o notes.txt"), 1, {"notes.txt", "another name"});
+  EXPECT_EQ(read("notes.txt"), "not to be lost");
   expect_failure(run("encode a.bin -o /dev/full"), 1, {"/dev/full", "space"});
   expect_failure(run("encode a.bin --append -o /dev/full"), 1, {"/dev/full", "space"});
   EXPECT_EQ(read_bin("a.bin").size(), make_room(0.0F).size());

@@ -58,6 +58,12 @@ TEST_F(LiveTool, AReceiverEndsCleanlyWithoutAnySweep) {
   EXPECT_EQ(run("info out.sweep --json").json()["frames"].size(), 0U);
 }
 
+/// A script's shell makes what it starts with & ignore SIGINT.
+TEST_F(LiveTool, AnInterruptEndsAReceiverThatAScriptStarted) {
+  const Outcome outcome = shell(receiving("-", ">out.sweep") + "kill -INT $R; wait $R; echo $?");
+  EXPECT_EQ(outcome.out, "0\n");
+}
+
 TEST_F(LiveTool, ASenderEndsCleanlyWithoutAReceiver) {
   const Outcome outcome = shell(
       "\"$SWEEPCAST\" send sweeps --to 127.0.0.1:9 --key k --loop --record kept.sweep & "

@@ -64,8 +64,10 @@ TEST_F(SimulateLinkTest, CsvHasALineASweepAndTheTableALineAStrategy) {
 
 TEST_F(SimulateLinkTest, ErrorsNameWhatIsWrong) {
   const Outcome strategy = run("simulate-link --strategy best --sweeps sweeps");
-  EXPECT_EQ(strategy.exit_status, 1);
-  EXPECT_NE(strategy.err.find("best: no such strategy"), std::string::npos);
+  EXPECT_EQ(strategy.exit_status, 2);
+  EXPECT_NE(strategy.err.find("--strategy: \"best\" is not one of budget, paper, bola, mpc"),
+            std::string::npos)
+      << strategy.err;
   const Outcome trace = run("simulate-link --trace none.up --sweeps sweeps");
   EXPECT_EQ(trace.exit_status, 1);
   EXPECT_NE(trace.err.find("none.up"), std::string::npos);

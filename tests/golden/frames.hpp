@@ -100,6 +100,7 @@ inline std::vector<GoldenSource> golden_sources() {
   sources.push_back({"beam_octree", octree, made_scatter(200, 1)});
   add_beam("beam_crowded", {.firings = 160, .jitter_deg = 0.2},
            [](BeamOptions& o) { o.max_error_m = 0.1; });
+  add_beam("beam_deep", spinning, [](BeamOptions& o) { o.effort = Effort::best; });
   return sources;
 }
 

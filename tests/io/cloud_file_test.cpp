@@ -103,9 +103,10 @@ TEST_P(EveryKind, SurvivesDamage) {
   round_trip(random_cloud(8), again);
   const auto bytes = test::read_bytes(path());
   std::mt19937 random(5);
-  const auto parse = GetParam().format == CloudFormat::bin   ? parse_bin
-                     : GetParam().format == CloudFormat::pcd ? parse_pcd
-                                                             : parse_ply;
+  const auto parse = [format = GetParam().format](const auto& input, PointCloud& cloud) {
+    if (format == CloudFormat::bin) return parse_bin(input, cloud);
+    return format == CloudFormat::pcd ? parse_pcd(input, cloud) : parse_ply(input, cloud);
+  };
   for (int trial = 0; trial < 3000; ++trial) {
     auto damaged = bytes;
     for (auto flips = 1 + random() % 3; flips > 0; --flips) {
@@ -303,6 +304,27 @@ TEST(CloudFile, FindsRingsAndTimesOfARealSweep) {
   EXPECT_EQ(*last, 1306368 - 2303);
   EXPECT_EQ(cloud.time_ns.front(), 2384 - 2303);
   EXPECT_EQ(cloud.intensity.front(), 100.0F);
+}
+
+TEST(CloudFile, NamesTheFieldsThatItSkips) {
+  const TemporaryFolder folder;
+  test::write_text(folder / "a.pcd",
+                   "VERSION 0.7\nFIELDS x y z normal_x _ Ring t timestamp\nSIZE 4 4 4 4 1 2 4 4\n"
+                   "TYPE F F F F U U U U\nCOUNT 1 1 1 1 4 1 1 1\nWIDTH 1\nHEIGHT 1\n"
+                   "POINTS 1\nDATA ascii\n1 2 3 4 0 0 0 0 5 6 7\n");
+  test::write_text(folder / "a.ply",
+                   "ply\nformat ascii 1.0\nelement vertex 1\nproperty uchar red\nproperty float x\n"
+                   "property float y\nproperty float z\nproperty list uchar int tags\n"
+                   "element face 0\nproperty int material\nend_header\n9 1 2 3 0\n");
+  PointCloud cloud;
+  std::vector<std::string> skipped;
+  ASSERT_TRUE(read_cloud(folder / "a.pcd", cloud, &skipped));
+  EXPECT_EQ(skipped, (std::vector<std::string>{"normal_x", "timestamp"}));
+  ASSERT_TRUE(read_cloud(folder / "a.ply", cloud, &skipped));
+  EXPECT_EQ(skipped, (std::vector<std::string>{"red", "tags"}));
+  ASSERT_TRUE(write_cloud(folder / "b.bin", cloud, CloudFormat::bin));
+  ASSERT_TRUE(read_cloud(folder / "b.bin", cloud, &skipped));
+  EXPECT_TRUE(skipped.empty());
 }
 
 }  // namespace

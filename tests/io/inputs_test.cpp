@@ -85,7 +85,7 @@ TEST(Inputs, NamesWhatIsWrong) {
   expect_error(failure(folder, {"out.sweep"}), invalid, "out.sweep: is not named as a cloud");
   expect_error(failure(folder, {"a", "b"}), invalid, (folder / "a/1.bin").string());
   expect_error(failure(folder, {"a", "b"}), invalid, (folder / "b/1.pcd").string());
-  expect_error(failure(folder, {"a", "a/1.bin"}), invalid, "same base name");
+  expect_error(failure(folder, {"a", "a/1.bin"}), invalid, "a/1.bin: is given twice; name it once");
 }
 
 }  // namespace

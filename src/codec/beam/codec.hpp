@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "codec/beam/attributes.hpp"
@@ -42,6 +43,10 @@ enum class Part : std::uint8_t {
 
 [[nodiscard]] std::string_view part_name(std::uint8_t kind) noexcept;
 
+/// How many layers a frame with this part `grid` was made of; a link may have cut some off.
+/// None where the part cannot be right.
+[[nodiscard]] std::optional<int> layers_of_grid(std::span<const std::byte> grid);
+
 [[nodiscard]] Status check(const BeamOptions& options);
 
 /// Makes parts of sweeps; keeps its buffers, and the sensor's model from sweep to sweep.
@@ -54,7 +59,8 @@ class Encoder {
   [[nodiscard]] Status set_target_bytes(std::size_t bytes);
 
   /// Fills `parts` and `counts`. Unless thinned, every finite point with a range decodes within the
-  /// error bound. Error: limit (the sweep does not fit the bytes that options allow).
+  /// error bound. Error: limit (the sweep does not fit the bytes that options allow;
+  /// the message tells how many it takes at its coarsest).
   [[nodiscard]] Status encode(const CloudView& cloud, const SweepInfo& info, PartList& parts,
                               SweepCounts& counts);
 
@@ -71,8 +77,11 @@ class Encoder {
   void gather_extras(SweepCounts& counts);
   void write_extras(PartList& parts, SweepCounts& counts);
   void write_layers(PartList& parts, SweepCounts& counts);
+  void write_original(const CloudView& cloud, PartList& parts);
   [[nodiscard]] std::vector<std::int32_t> take_decoded();
   void give_back();
+  void move_missed();
+  void restore_missed();
   void write_exact_part(std::span<const std::int32_t> ranges, PartList& parts);
 
   /// Which points of the image are extras, because so they take fewer bytes.
@@ -93,6 +102,7 @@ class Encoder {
   LayerPlan plan_;
   std::vector<std::int32_t> first_column_;              ///< as `find_first_columns` gives it
   std::vector<std::int32_t> range_, azimuth_, height_;  ///< the image, columns aligned by azimuth
+  std::vector<std::pair<std::size_t, std::int32_t>> missed_;  ///< cells of the image, and ranges
   FiringCoder firing_coder_;
   LayerCoder layers_;
   OctreeCoder octree_;

@@ -14,6 +14,16 @@ namespace {
 constexpr std::uint64_t kMostPoints = std::uint64_t{1} << 24;
 constexpr std::int32_t kLargestStep = 1 << 20;
 
+/// Whether a frame may begin with every so many rows or columns.
+bool is_stride(int stride) {
+  return stride > 0 && stride <= 16 && std::has_single_bit(static_cast<unsigned>(stride));
+}
+
+/// Every layer halves the distance of the columns.
+int layers_of(int base_cols) {
+  return std::countr_zero(static_cast<unsigned>(base_cols)) + 1;
+}
+
 }  // namespace
 
 std::string_view part_name(std::uint8_t kind) noexcept {
@@ -40,6 +50,17 @@ std::string_view part_name(std::uint8_t kind) noexcept {
       break;
   }
   return "unknown";
+}
+
+std::optional<int> layers_of_grid(std::span<const std::byte> grid) {
+  ByteReader in(grid);
+  if (in.get_varint(kMaxTicks) == 0) return in.ok() ? std::optional(1) : std::nullopt;
+  (void)in.get<std::uint32_t>();  // the model's id
+  (void)in.get<std::uint8_t>();   // effort
+  (void)in.get<std::uint8_t>();   // rows
+  const int base_cols = in.get<std::uint8_t>();
+  if (!in.ok() || !is_stride(base_cols)) return std::nullopt;
+  return layers_of(base_cols);
 }
 
 // The same way back.
@@ -167,12 +188,11 @@ bool Decoder::read_grid(std::span<const std::byte> bytes, std::size_t most) {
   image_.cols = static_cast<int>(in.get_varint(kMaxTicks));
   if (image_.cols == 0) return in.ok();
   const auto id = in.get<std::uint32_t>();
-  plan_.effort = static_cast<Effort>(in.get<std::uint8_t>());
+  const bool is_coding = set_coding(in.get<std::uint8_t>(), plan_);
   const int base_rows = in.get<std::uint8_t>();
   const int base_cols = in.get<std::uint8_t>();
-  const auto is_stride = [](int v) { return v > 0 && v <= 16 && (v & (v - 1)) == 0; };
-  if (!is_stride(base_rows) || !is_stride(base_cols) || plan_.effort > Effort::best) return false;
-  plan_.quality.resize(static_cast<std::size_t>(std::countr_zero(unsigned(base_cols))) + 1);
+  if (!is_stride(base_rows) || !is_stride(base_cols) || !is_coding) return false;
+  plan_.quality.resize(static_cast<std::size_t>(layers_of(base_cols)));
   for (LayerQuality& quality : plan_.quality) {
     quality.step = static_cast<std::int32_t>(in.get_varint(kLargestStep));
     quality.tolerance =

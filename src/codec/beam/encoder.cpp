@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -8,8 +9,9 @@
 #include "codec/beam/codec.hpp"
 #include "codec/beam/crowding.hpp"
 #include "codec/beam/error_bound.hpp"
+#include "codec/beam/missed_points.hpp"
 #include "codec/beam/model_bytes.hpp"
-#include "codec/beam/place_choice.hpp"
+#include "core/trig.hpp"
 #include "rate/beam_quality.hpp"
 
 namespace sweepcast::beam {
@@ -28,14 +30,18 @@ constexpr int kMostTries = 4;
 // After how many frames that is done again.
 constexpr int kReviewInterval = 10;
 
-constexpr std::size_t kFewExtras = 256;
+// Points that thinning would let vanish are kept where nothing is within so many of its last steps:
+// measured, on KITTI's sweeps, nearer ones are not worth their bytes.
+constexpr std::int32_t kMissedSteps = 8;
 
 // Under wider bounds an octree's points would be off by as much as the bound, where the image's are
 // off by half of it: too dear for the bytes.
 constexpr double kWidestCrowd = 0.1;
 
-std::uint64_t as_unsigned(std::int64_t value) {
-  return static_cast<std::uint64_t>(value);
+// With as few digits as tell the number.
+std::string in_digits(double number) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
 }
 
 BeamQuality quality_of(const BeamOptions& options) {
@@ -68,12 +74,12 @@ std::uint32_t count_points(std::span<const std::int32_t> range) {
 Status check(const BeamOptions& options) {
   if (!(options.max_error_m >= 0.001 && options.max_error_m <= 2.0)) {
     return fail(ErrorCode::invalid_argument, "the maximum error is " +
-                                                 std::to_string(options.max_error_m) +
+                                                 in_digits(options.max_error_m) +
                                                  "; it must lie between 0.001 and 2 m");
   }
   if (!(options.intensity_step >= 0.0 && options.intensity_step <= 1e6)) {
     return fail(ErrorCode::invalid_argument, "the intensity step is " +
-                                                 std::to_string(options.intensity_step) +
+                                                 in_digits(options.intensity_step) +
                                                  "; it must lie between 0 (exact) and 1e6");
   }
   if (options.level && (*options.level < 0 || *options.level >= int{kBeamLevels.size()})) {
@@ -82,8 +88,9 @@ Status check(const BeamOptions& options) {
   }
   if ((options.level ? 1 : 0) + (options.target_bytes > 0 ? 1 : 0) + (options.lossless ? 1 : 0) >
       1) {
-    return fail(ErrorCode::invalid_argument,
-                "only one of level, target_bytes and lossless can be had at a time");
+    return fail(
+        ErrorCode::invalid_argument,
+        "only one of a level, a target of bytes and lossless can be had at a time; choose one");
   }
   if (options.model_interval < 1) {
     return fail(ErrorCode::invalid_argument, "the model interval must be at least 1 frame");
@@ -197,15 +204,18 @@ Status Encoder::fit_budget(const CloudView& cloud, const SweepInfo& info, PartLi
   };
   write_sweep(cloud, parts, counts);
   std::optional<double> tried, next;
+  std::size_t size = 0;
   do {
     if (next) write_at(*next);
     tried = next;
-    next = budget_->next(frame_size(CodecId::beam, info, counts, parts, kept));
+    size = frame_size(CodecId::beam, info, counts, parts, kept);
+    next = budget_->next(size);
   } while (next);
   if (!budget_->best()) {
     return fail(ErrorCode::limit, "the sweep does not fit " +
                                       std::to_string(options_.target_bytes) +
-                                      " bytes even at its coarsest; allow more, or crop it");
+                                      " bytes: at its coarsest it takes " + std::to_string(size) +
+                                      "; set a target of at least that many, or crop it");
   }
   if (tried && budget_->best() != tried) write_at(*budget_->best());
   return {};
@@ -215,22 +225,60 @@ Status Encoder::fit_budget(const CloudView& cloud, const SweepInfo& info, PartLi
 void Encoder::write_sweep(const CloudView& cloud, PartList& parts, SweepCounts& counts) {
   BeamImage& image = imager_.image();
   const SensorModel* model = image.cols > 0 ? imager_.model() : nullptr;
-  if (model != nullptr) plan_layers();
+  if (model != nullptr) {
+    plan_layers();
+    move_missed();
+  }
   write_grid(parts);
   write_extras(parts, counts);
   attributes_.begin(image, model != nullptr ? &plan_ : nullptr, first_column_, range_, parts);
   attributes_.write_extras(extra_points_, parts);
   if (model != nullptr) write_layers(parts, counts);
-  if (!options_.lossless && !options_.keep_order) return;
-  std::vector<std::int32_t> ranges;
-  if (model != nullptr) ranges = take_decoded();
-  if (options_.lossless) write_exact_part(ranges, parts);
-  if (options_.keep_order) {
-    parts.begin(static_cast<std::uint8_t>(Part::order));
-    write_order(original_order(cloud.size, cloud.width, image, extra_points_), image,
-                extra_points_.size(), parts.bytes());
+  if (options_.lossless || options_.keep_order) write_original(cloud, parts);
+  restore_missed();
+}
+
+// Moves to the extras what thinning would let vanish: found by coding the layers once.
+void Encoder::move_missed() {
+  missed_.clear();
+  const std::int32_t reach = kMissedSteps * plan_.quality.back().step;
+  const bool may_miss =
+      std::any_of(plan_.quality.begin(), plan_.quality.end(),
+                  [reach](const LayerQuality& quality) { return quality.tolerance > reach; });
+  if (!may_miss) return;
+  layers_.begin(plan_);
+  std::vector<std::byte> bytes;
+  for (int layer = 0; layer < LayerCoder::layers(plan_); ++layer) {
+    layers_.encode(layer, {range_, azimuth_, height_}, bytes);
   }
-  if (model != nullptr) give_back();
+  std::vector<std::int32_t> decoded;
+  std::vector<CellState> state;
+  layers_.read(decoded, state);
+  BeamImage& image = imager_.image();
+  const auto cols = static_cast<std::size_t>(image.cols);
+  const double turns = static_cast<double>(image.firing_tick.back() - image.firing_tick.front()) /
+                       imager_.model()->ticks_per_turn;
+  const double column_angle = 2.0 * kPi * turns / static_cast<double>(cols);
+  std::vector<bool> is_missed(range_.size());
+  const ThinnedImage thinned{cols, column_angle, plan_.elevation, range_, decoded, state};
+  for (const std::size_t cell : missed_cells(thinned, reach)) {
+    is_missed[cell] = true;
+    range_[cell] = 0;
+  }
+  for_each_aligned(first_column_, image, [&](std::size_t cell, std::size_t aligned) {
+    if (!is_missed[aligned]) return;
+    missed_.emplace_back(cell, image.range[cell]);
+    image.range[cell] = 0;
+    image.extras.push_back({image.point[cell], ExtraReason::misfit});
+  });
+}
+
+// Undoes it.
+void Encoder::restore_missed() {
+  BeamImage& image = imager_.image();
+  for (const auto& [cell, range] : missed_) image.range[cell] = range;
+  image.extras.resize(image.extras.size() - missed_.size());
+  missed_.clear();
 }
 
 void Encoder::write_layers(PartList& parts, SweepCounts& counts) {
@@ -248,53 +296,6 @@ void Encoder::write_layers(PartList& parts, SweepCounts& counts) {
   }
   counts.points_coded += measured;
   counts.thinned += points - measured;
-}
-
-// Puts what the decoder has in the place of the image's ranges: cells that thinning left out have
-// none. Gives the true ranges of those that it has, row by row.
-std::vector<std::int32_t> Encoder::take_decoded() {
-  BeamImage& image = imager_.image();
-  std::vector<std::int32_t> decoded, truth;
-  std::vector<CellState> state;
-  layers_.read(decoded, state);
-  for_each_aligned(first_column_, image, [&](std::size_t cell, std::size_t aligned) {
-    const bool measured = state[aligned] == CellState::measured;
-    if (measured) truth.push_back(image.range[cell]);
-    image.range[cell] = measured ? decoded[aligned] : 0;
-  });
-  return truth;
-}
-
-// Undoes it.
-void Encoder::give_back() {
-  BeamImage& image = imager_.image();
-  for_each_aligned(first_column_, image, [&](std::size_t cell, std::size_t aligned) {
-    image.range[cell] = range_[aligned];
-  });
-}
-
-// What the decoder lacks to the true coordinates. `ranges`: as `take_decoded` gives them.
-void Encoder::write_exact_part(std::span<const std::int32_t> ranges, PartList& parts) {
-  const BeamImage& image = imager_.image();
-  PointCloud truth;
-  const auto add_truth = [&](std::uint32_t point) {
-    truth.x.push_back(imager_.x()[point]);
-    truth.y.push_back(imager_.y()[point]);
-    truth.z.push_back(imager_.z()[point]);
-  };
-  placed_.clear();
-  if (image.cols > 0) {
-    imager_.unprojector().unproject(image, placed_);
-    for (std::size_t cell = 0; cell < image.cells(); ++cell) {
-      if (image.range[cell] != 0) add_truth(image.point[cell]);
-    }
-  }
-  const double step = static_cast<double>(extras_step(error_m())) / kRangeUnits;
-  append_places(lattice_, step, placed_);
-  for (const std::uint32_t point : extra_points_) add_truth(point);
-  parts.begin(static_cast<std::uint8_t>(Part::exact));
-  const PointOrigins origins = origins_of(imager_.model(), image, lattice_.size());
-  write_exact(placed_, origins, truth, ranges, parts.bytes());
 }
 
 void Encoder::plan_layers() {
@@ -317,82 +318,6 @@ void Encoder::plan_layers() {
     azimuth_[aligned] = image.azimuth_residual[cell];
     height_[aligned] = image.height_residual[cell];
   });
-}
-
-void Encoder::write_model_part(PartList& parts) {
-  const SensorModel* model = imager_.model();
-  if (model == nullptr || imager_.image().cols == 0) return;
-  if (sent_model_ == imager_.model_id() && ++frames_since_model_ < options_.model_interval) return;
-  sent_model_ = imager_.model_id();
-  frames_since_model_ = 0;
-  ByteWriter out = parts.begin(static_cast<std::uint8_t>(Part::model));
-  write_model(*model, out);
-}
-
-void Encoder::write_grid(PartList& parts) {
-  const BeamImage& image = imager_.image();
-  ByteWriter out = parts.begin(static_cast<std::uint8_t>(Part::grid));
-  out.put_varint(as_unsigned(image.cols));
-  if (image.cols > 0) {
-    out.put(imager_.model_id());
-    out.put(static_cast<std::uint8_t>(plan_.effort));
-    out.put(static_cast<std::uint8_t>(kBaseRows));
-    out.put(static_cast<std::uint8_t>(kBaseCols));
-    for (const LayerQuality& quality : plan_.quality) {
-      out.put_varint(as_unsigned(quality.step));
-      out.put_signed(quality.tolerance);
-    }
-    const bool residuals = !image.azimuth_residual.empty();
-    out.put_varint(residuals ? as_unsigned(image.azimuth_divisor) : 0U);
-    out.put_varint(as_unsigned(image.height_step));
-    out.put(static_cast<std::uint8_t>(image.motion ? 1 : 0));
-    if (image.motion) write_motion(*image.motion, out);
-  }
-  if (image.cols == 0) return;
-  parts.begin(static_cast<std::uint8_t>(Part::firings));
-  firing_coder_.write(image.firing_tick, parts.bytes(), image.held);
-}
-
-// Puts the points without a cell on a lattice, and counts those that cannot be coded.
-void Encoder::gather_extras(SweepCounts& counts) {
-  extra_points_.clear();
-  placed_.clear();
-  lattice_.clear();
-  const double step = static_cast<double>(extras_step(error_m())) / kRangeUnits;
-  for (const ExtraPoint& extra : imager_.image().extras) {
-    const float x = imager_.x()[extra.point];
-    const float y = imager_.y()[extra.point];
-    const float z = imager_.z()[extra.point];
-    LatticePoint place{};
-    if (!(std::isfinite(x) && std::isfinite(y) && std::isfinite(z))) {
-      ++counts.not_finite;
-    } else if (x == 0.0F && y == 0.0F && z == 0.0F) {
-      ++counts.zero_range;
-    } else if (!nearest_place({x, y, z}, step, place)) {
-      ++counts.out_of_view;
-    } else {
-      lattice_.push_back(place);
-      extra_points_.push_back(extra.point);
-      placed_.x.push_back(x);
-      placed_.y.push_back(y);
-      placed_.z.push_back(z);
-    }
-  }
-  // What is missing to the exact coordinates takes the fewer bytes the less it is. And a few points
-  // share no places.
-  if (options_.lossless || lattice_.size() < kFewExtras) return;
-  choose_places(placed_.x, placed_.y, placed_.z, step, error_m(), lattice_);
-}
-
-void Encoder::write_extras(PartList& parts, SweepCounts& counts) {
-  gather_extras(counts);
-  counts.points_coded += static_cast<std::uint32_t>(lattice_.size());
-  if (lattice_.empty()) return;
-  ByteWriter out = parts.begin(static_cast<std::uint8_t>(Part::extras));
-  out.put_varint(lattice_.size());
-  out.put_varint(as_unsigned(extras_step(error_m())));
-  octree_.sort(lattice_, extra_points_);
-  octree_.write(lattice_, parts.bytes());
 }
 
 }  // namespace sweepcast::beam

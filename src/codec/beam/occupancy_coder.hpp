@@ -5,9 +5,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include "codec/beam/plane.hpp"
+#include "codec/entropy/deep_mixer.hpp"
 #include "codec/entropy/mixer.hpp"
 #include "codec/entropy/symbol_coder.hpp"
 
@@ -26,7 +28,8 @@ struct RunStates {
 /// Cells whose states are said at once where they are as expected.
 inline constexpr std::size_t kGroup = 8;
 
-/// Codes states. `kInputs` contexts are mixed: 2 or 5; 1 stands for symbols in place of bits.
+/// Codes states. `kInputs` contexts are mixed: 2 or 5, or more deeply 9; 1 stands for symbols in
+/// place of bits.
 template <std::size_t kInputs>
 class OccupancyCoder {
  public:
@@ -65,13 +68,17 @@ class OccupancyCoder {
   /// Codes the states of cells [first, last) of a run, at most kGroup, which have been guessed.
   template <class Coder>
   void code_group(Coder& coder, const RunStates& run, std::size_t first, std::size_t last) {
-    std::uint32_t doubtful = 0;
+    GroupGuess guess{};
     bool as_expected = true;
     for (std::size_t i = first; i < last; ++i) {
-      doubtful += doubt_[i];
+      guess.doubtful += doubt_[i];
       as_expected &= run.cell[i] == truth_[i];
+      if constexpr (kIsDeep) {
+        guess.measured = guess.measured * 2 + (run.cell[i] == CellState::measured ? 1U : 0U);
+        guess.doubts = guess.doubts * 3 + doubt_[i];
+      }
     }
-    if (group_as_expected(coder, run.step, doubtful, as_expected)) return;
+    if (group_as_expected(coder, run, guess, as_expected)) return;
     if constexpr (kInputs == 1) {
       for (std::size_t half = first; half < last; half += kHalf) {
         code_half(coder, run, half, std::min(last, half + kHalf));
@@ -79,15 +86,31 @@ class OccupancyCoder {
       return;
     }
     for (std::size_t i = first; i < last; ++i) run.cell[i] = CellState::unknown;
+    std::uint32_t wrong = 0;
     for (std::size_t i = first; i < last; ++i) {
-      const bool occupied = code_cell(coder, run, i, truth_[i] == CellState::measured);
+      const auto left = static_cast<std::uint32_t>(last - i);
+      const bool guessed = ((guess.measured >> (left - 1)) & 1U) != 0;
+      const bool occupied =
+          code_cell(coder, run, i, left * 16 + wrong, truth_[i] == CellState::measured);
       run.cell[i] = occupied ? CellState::measured : CellState::empty;
+      wrong = std::min(wrong + (occupied != guessed ? 1U : 0U), 3U);
     }
   }
 
  private:
   static constexpr int kTableBits = 13;
+  static constexpr bool kIsDeep = kInputs > 5;
+  static constexpr std::size_t kPlainInputs = kIsDeep ? 5 : kInputs;
   static constexpr std::size_t kGroupInputs = kInputs > 4 ? 4 : kInputs > 1 ? 2 : 1;
+  using Group = std::conditional_t<kIsDeep, DeepMixer<0, kGroupInputs + 4>, BitMixer<kGroupInputs>>;
+  using Cell = std::conditional_t<kIsDeep, DeepMixer<0, kInputs>, BitMixer<kInputs>>;
+
+  /// The guesses for a group of cells.
+  struct GroupGuess {
+    std::uint32_t doubtful = 0;  ///< sum of the doubts
+    std::uint32_t measured = 0;  ///< a bit a cell, the last one lowest
+    std::uint32_t doubts = 0;    ///< a digit to the base of 3 a cell
+  };
 
   // 0 unknown, 1 empty, 2 holds a point.
   static std::uint8_t known(CellState state) {
@@ -117,7 +140,9 @@ class OccupancyCoder {
   }
 
   template <class Coder>
-  bool group_as_expected(Coder& coder, std::uint32_t step, std::uint32_t doubtful, bool is) {
+  bool group_as_expected(Coder& coder, const RunStates& run, const GroupGuess& guess, bool is) {
+    const std::uint32_t step = run.step;
+    const std::uint32_t doubtful = guess.doubtful;
     const std::uint32_t doubt = std::min(doubtful, 7U);
     typename BitMixer<kGroupInputs>::Contexts contexts;
     contexts[0] = (doubtful * 4U + (history_ & 3U)) * 8U + step;
@@ -128,7 +153,21 @@ class OccupancyCoder {
       contexts[2] = (history_ & 255U) * 4U + doubt / 2U;
       contexts[3] = doubt * 8U + step;
     }
-    const bool same = group_.code(coder, contexts, doubt, is);
+    bool same = false;
+    if constexpr (kIsDeep) {
+      same = group_.code(coder,
+                         {{},
+                          {contexts[0], contexts[1], contexts[2], contexts[3],
+                           hash_context(guess.measured, guess.doubts),
+                           hash_context(guess.doubts, 5000 + (history_ & 1U)),
+                           hash_context(run.row, doubt), hash_context(guess.measured, 777 + doubt)},
+                          doubt,
+                          history_ & 15U,
+                          doubtful * 4 + (history_ & 3U)},
+                         is);
+    } else {
+      same = group_.code(coder, contexts, doubt, is);
+    }
     history_ = history_ * 2U + (same ? 1U : 0U);
     return same;
   }
@@ -152,15 +191,18 @@ class OccupancyCoder {
     }
   }
 
+  // `place`: how many cells of the group are left, and how many of those before were not as
+  // guessed.
   template <class Coder>
-  bool code_cell(Coder& coder, const RunStates& run, std::size_t i, bool occupied) {
+  bool code_cell(Coder& coder, const RunStates& run, std::size_t i, std::uint32_t place,
+                 bool occupied) {
     const std::uint32_t n = known(run.n[i]);
     const std::uint32_t sa = known(run.sa[i]);
     const std::uint32_t sides = known(run.a[i]) * 3U + known(run.b[i]);
     const std::uint32_t near = ((sides * 3U + n) * 3U + sa) * 3U + known(run.sb[i]);
     const std::uint32_t step = run.step;
     const std::uint32_t before = i > 0 ? known(run.cell[i - 1]) : 0U;
-    typename BitMixer<kInputs>::Contexts contexts;
+    typename BitMixer<kPlainInputs>::Contexts contexts;
     contexts[0] = (near * 3U + before) * 8U + step;
     if constexpr (kInputs > 1) {
       contexts[1] = hash_context((run.row * 9U + sides) * 3U + before, n);
@@ -173,7 +215,24 @@ class OccupancyCoder {
       contexts[3] = ((sides * 9U + beyond) * 3U + n) * 8U + step;
       contexts[4] = hash_context((sides * 9U + across) * 9U + n * 3U + nn, step);
     }
-    return cell_.code(coder, contexts, sides * 9U + n * 3U + sa, occupied);
+    const std::size_t set = sides * 9U + n * 3U + sa;
+    if constexpr (kIsDeep) {
+      const auto here = static_cast<std::ptrdiff_t>(i);
+      const std::uint32_t row = (known(run.n[here - 1]) * 3U + n) * 3U + known(run.n[here + 1]);
+      const std::uint32_t two = before * 3 + (i > 1 ? known(run.cell[i - 2]) : 0U);
+      return cell_.code(
+          coder,
+          {{},
+           {contexts[0], contexts[1], contexts[2], contexts[3], contexts[4],
+            hash_context((row * 3U + before) * 9U + sides, 4000), hash_context(two, near + 6000),
+            hash_context(run.row, near + 8000), hash_context(place, 9000 + sides * 3U + n)},
+           set,
+           two,
+           near},
+          occupied);
+    } else {
+      return cell_.code(coder, contexts, set, occupied);
+    }
   }
 
   static constexpr std::size_t kHalf = 4;
@@ -187,8 +246,20 @@ class OccupancyCoder {
   }();
 
   SymbolCoder halves_{256};
-  BitMixer<kGroupInputs> group_{kTableBits, 8};
-  BitMixer<kInputs> cell_{kTableBits, 81};
+  Group group_ = [] {
+    if constexpr (kIsDeep) {
+      return Group(kTableBits, 8, 16, 68);
+    } else {
+      return Group(kTableBits, 8);
+    }
+  }();
+  Cell cell_ = [] {
+    if constexpr (kIsDeep) {
+      return Cell(kTableBits + 1, 81, 9, 243);
+    } else {
+      return Cell(kTableBits, 81);
+    }
+  }();
   std::uint32_t history_ = 0;
   std::vector<std::uint8_t> doubt_;  ///< of a run's guesses: 0 sure, 1, 2
   std::vector<CellState> truth_;     ///< of a run; decoding: anything

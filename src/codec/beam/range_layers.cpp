@@ -10,7 +10,8 @@ namespace {
 
 using FastCoder = StepCoder<1, 1>;
 using NormalCoder = StepCoder<3, 2>;
-using BestCoder = StepCoder<4, 5>;
+using FormerBestCoder = StepCoder<4, 5>;
+using BestCoder = StepCoder<kDeep, 9>;
 
 // The weight of the upper of two rows for a row between, 1/256: a plane's inverse range is about
 // linear in the tangent of elevation.
@@ -156,7 +157,8 @@ struct LayerCoder::State {
   Plane fresh;  ///< the columns between, while they are coded
   Plane merged;
   int stride = 1;
-  std::variant<std::unique_ptr<FastCoder>, std::unique_ptr<NormalCoder>, std::unique_ptr<BestCoder>>
+  std::variant<std::unique_ptr<FastCoder>, std::unique_ptr<NormalCoder>,
+               std::unique_ptr<FormerBestCoder>, std::unique_ptr<BestCoder>>
       coder;
   AngleCoder azimuth, height;
   std::vector<std::int32_t> truth;  ///< of a run
@@ -254,7 +256,11 @@ void LayerCoder::begin(const LayerPlan& plan) {
       use(std::in_place_type<NormalCoder>);
       break;
     case Effort::best:
-      use(std::in_place_type<BestCoder>);
+      if (plan.former_best) {
+        use(std::in_place_type<FormerBestCoder>);
+      } else {
+        use(std::in_place_type<BestCoder>);
+      }
       break;
   }
   std::visit([](auto& steps) { steps->reset(); }, s.coder);

@@ -32,11 +32,26 @@ struct LayerPlan {
   int rows = 0;
   int cols = 0;
   Effort effort = Effort::normal;
+  bool former_best = false;  ///< effort `best` as frames had it at first: to decode them
   Stages stages{};
   std::vector<LatticeStep> lattice;     ///< from the base on
   std::vector<LayerQuality> quality;    ///< of each layer; the first is never thinned
   std::vector<std::int32_t> elevation;  ///< rows values: tangent of each row's beam, falling
 };
+
+/// The byte of a frame that tells how its layers are coded.
+[[nodiscard]] constexpr std::uint8_t coding_of(const LayerPlan& plan) {
+  constexpr std::uint8_t kDeepCoding = 3;
+  if (plan.effort == Effort::best && !plan.former_best) return kDeepCoding;
+  return static_cast<std::uint8_t>(plan.effort);
+}
+/// Sets what it tells; false where there is no such coding.
+[[nodiscard]] constexpr bool set_coding(std::uint8_t coding, LayerPlan& plan) {
+  constexpr std::uint8_t kFormerBest = 2;
+  plan.former_best = coding == kFormerBest;
+  plan.effort = static_cast<Effort>(std::min(coding, kFormerBest));
+  return coding == coding_of(plan);
+}
 
 /// The values of an image, row-major; the residuals are empty where there are none.
 struct LayerValues {

@@ -11,6 +11,20 @@
 
 namespace sweepcast::beam {
 
+/// Codes a number below 2^24 - 1 in plain bits, fewer for smaller ones: the Elias-gamma code.
+template <class Coder>
+std::uint32_t code_gamma(Coder& coder, std::uint32_t value) {
+  constexpr std::uint32_t kEven = 32768;
+  const std::uint32_t plus = value + 1;
+  std::uint32_t bits = 0;
+  while (bits < 23 && coder.code((plus >> (bits + 1)) != 0, kEven)) ++bits;
+  std::uint32_t result = 1;
+  for (std::uint32_t i = bits; i-- > 0;) {
+    result = result * 2 + (coder.code(((plus >> i) & 1U) != 0, kEven) ? 1U : 0U);
+  }
+  return result - 1;
+}
+
 /// Codes numbers of steps. `kInputs` contexts are mixed: 3, or 4 for fewer bytes. For speed there
 /// is QuickResidualCoder.
 template <std::size_t kInputs>
@@ -67,19 +81,6 @@ class ResidualCoder {
     }
     return size + static_cast<std::int32_t>(
                       code_gamma(coder, static_cast<std::uint32_t>(std::max(steps - size, 0))));
-  }
-
-  template <class Coder>
-  static std::uint32_t code_gamma(Coder& coder, std::uint32_t value) {
-    constexpr std::uint32_t kEven = 32768;
-    const std::uint32_t plus = value + 1;
-    std::uint32_t bits = 0;
-    while (bits < 23 && coder.code((plus >> (bits + 1)) != 0, kEven)) ++bits;
-    std::uint32_t result = 1;
-    for (std::uint32_t i = bits; i-- > 0;) {
-      result = result * 2 + (coder.code(((plus >> i) & 1U) != 0, kEven) ? 1U : 0U);
-    }
-    return result - 1;
   }
 
   BitMixer<kInputs> zero_{kTableBits, 8 * kBases};

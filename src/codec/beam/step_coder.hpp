@@ -10,6 +10,8 @@
 #include <cstdlib>
 #include <type_traits>
 
+#include "codec/beam/deep_residual_coder.hpp"
+#include "codec/beam/deep_side_coder.hpp"
 #include "codec/beam/occupancy_coder.hpp"
 #include "codec/beam/prediction.hpp"
 #include "codec/beam/quick_residual_coder.hpp"
@@ -29,8 +31,11 @@ struct Run {
   bool sequential = false;
 };
 
+/// In the place of a number of contexts: the coders that take the fewest bytes.
+inline constexpr std::size_t kDeep = 8;
+
 /// Codes runs. So many contexts are mixed for residuals and for states; 1 stands for symbols in
-/// place of bits.
+/// place of bits, kDeep for deep mixing.
 template <std::size_t kResidualInputs, std::size_t kStateInputs>
 class StepCoder {
  public:
@@ -39,6 +44,7 @@ class StepCoder {
     occupancy_.reset();
     residual_.reset();
     pick_.reset();
+    deep_side_.reset();
     side_.reset(kFirstSides);
     skip_.reset();
   }
@@ -74,6 +80,7 @@ class StepCoder {
       if (run.sequential) occupancy_.guess(run.states, first, last);
       occupancy_.code_group(coder, run.states, first, last);
     }
+    if constexpr (kIsDeep) residual_.begin_run();
     if (run.sequential) {
       code_ranges_in_turn(coder, run, truth);
     } else {
@@ -84,7 +91,18 @@ class StepCoder {
  private:
   static constexpr std::size_t kPicks = kResidualInputs > 3 ? 4 : kResidualInputs > 1 ? 2 : 1;
   static constexpr bool kAllContexts = kResidualInputs > 1;
+  static constexpr bool kIsDeep = kResidualInputs == kDeep;
   using Pick = BitMixer<kPicks>;
+
+  /// Where a coder is not the one that is used.
+  struct Unused {
+    void reset() {}
+  };
+
+  [[nodiscard]] CellView view(const Run& run, std::size_t i) const {
+    return {run.neighbours, scale_,         predictions_,    i,
+            run.range + i,  run.sequential, run.states.step, run.states.row};
+  }
 
   // Predictions of cells [first, last), which are one or all.
   void simplify(const Run& run, std::size_t first, std::size_t last) {
@@ -138,7 +156,12 @@ class StepCoder {
   void code_range(Coder& coder, const Run& run, std::size_t i, std::int32_t range) {
     const std::int32_t predicted = predictions_.range[i];
     const std::int32_t wanted = kDecodes<Coder> ? 0 : in_steps(range - predicted);
-    const std::int32_t steps = residual_.code(coder, contexts_, i, predictions_.basis[i], wanted);
+    std::int32_t steps = 0;
+    if constexpr (kIsDeep) {
+      steps = residual_.code(coder, view(run, i), contexts_, wanted);
+    } else {
+      steps = residual_.code(coder, contexts_, i, predictions_.basis[i], wanted);
+    }
     const std::int64_t decoded = predicted + std::int64_t{steps} * scale_.step;
     run.range[i] =
         static_cast<std::int32_t>(std::clamp<std::int64_t>(decoded, kNearest, kFarthest));
@@ -238,17 +261,20 @@ class StepCoder {
       contexts[3] = (across * 8U + below) * 8U + step;
     }
     const bool is_side = apart(range, between) > std::min(apart(range, a), apart(range, b));
-    const Side side = code_side(coder, contexts, rising,
-                                !is_side                            ? Side::none
-                                : apart(range, b) < apart(range, a) ? Side::b
-                                                                    : Side::a);
+    const Side wanted = !is_side                            ? Side::none
+                        : apart(range, b) < apart(range, a) ? Side::b
+                                                            : Side::a;
+    Side side = Side::none;
+    if constexpr (kIsDeep) {
+      side = deep_side_.code(coder, view(run, i), contexts, wanted);
+    } else {
+      side = code_side(coder, contexts, rising, wanted);
+    }
     if (side == Side::none) return;
     predictions_.range[i] = side == Side::b ? b : a;
     predictions_.spread[i] = scale_.edge;
     predictions_.basis[i] = static_cast<std::int32_t>(Basis::side);
   }
-
-  enum class Side : std::uint8_t { none, a, b };
 
   template <class Coder>
   Side code_side(Coder& coder, const typename Pick::Contexts& contexts, std::uint32_t rising,
@@ -298,8 +324,10 @@ class StepCoder {
   Predictions predictions_;
   Contexts contexts_;
   OccupancyCoder<kStateInputs> occupancy_;
-  std::conditional_t<kResidualInputs == 1, QuickResidualCoder, ResidualCoder<kResidualInputs>>
-      residual_;
+  using PlainResidualCoder = std::conditional_t<kResidualInputs == 1, QuickResidualCoder,
+                                                ResidualCoder<kIsDeep ? 4 : kResidualInputs>>;
+  std::conditional_t<kIsDeep, DeepResidualCoder, PlainResidualCoder> residual_;
+  std::conditional_t<kIsDeep, DeepSideCoder, Unused> deep_side_;
   static constexpr SymbolShares kFirstSides = [] {
     SymbolShares shares{};
     for (std::size_t k = 1; k < kSymbols; ++k) {

@@ -47,6 +47,31 @@ constexpr std::array<std::int16_t, 4096> make_stretch(
 inline constexpr auto kSquash = make_squash();
 inline constexpr auto kStretch = make_stretch(kSquash);
 
+// ln(1 + e^x) is the integral of 1 / (1 + e^-x); in 1/65536 of the logistic domain's units.
+constexpr std::array<std::uint32_t, 4096> make_softplus() {
+  std::array<std::uint32_t, 4096> table{};
+  std::uint32_t sum = 0;
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    sum += kSquash[i];
+    table[i] = sum;
+  }
+  return table;
+}
+
+inline constexpr auto kSoftplus = make_softplus();
+
+constexpr std::array<std::int16_t, 2048> make_softplus_inverse() {
+  std::array<std::int16_t, 2048> table{};
+  std::size_t x = 0;
+  for (std::uint32_t y = 0; y < 2048; ++y) {
+    while (x < 4095 && kSoftplus[x] < (y << 16)) ++x;
+    table[y] = static_cast<std::int16_t>(static_cast<int>(x) - 2048);
+  }
+  return table;
+}
+
+inline constexpr auto kSoftplusInverse = make_softplus_inverse();
+
 }  // namespace logistic_detail
 
 /// 1/65536 of probability -> logistic domain. Exact to 1/4096 of probability.
@@ -62,6 +87,19 @@ inline constexpr auto kStretch = make_stretch(kSquash);
                                             : x;
   const auto index = static_cast<std::size_t>(2048) + static_cast<std::size_t>(clipped);
   return logistic_detail::kSquash[index];
+}
+
+/// ln(1 + e^x) of the logistic domain.
+[[nodiscard]] inline int softplus(int x) {
+  if (x > kLogisticLimit) return x;
+  if (x < -kLogisticLimit) return 0;
+  const auto index = static_cast<std::size_t>(2048 + x);
+  return static_cast<int>(logistic_detail::kSoftplus[index] >> 16);
+}
+
+/// ln(e^y - 1) of the logistic domain, for y from 0 on; at least -2048.
+[[nodiscard]] inline int softplus_inverse(int y) {
+  return y > kLogisticLimit ? y : logistic_detail::kSoftplusInverse[static_cast<std::size_t>(y)];
 }
 
 }  // namespace sweepcast

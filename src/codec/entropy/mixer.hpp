@@ -11,6 +11,7 @@
 
 #include "codec/entropy/logistic.hpp"
 #include "codec/entropy/range_coder.hpp"
+#include "codec/entropy/slot.hpp"
 
 namespace sweepcast {
 
@@ -80,29 +81,8 @@ class BitMixer {
   static constexpr std::int32_t kFirstWeight = 50000;  // about a third
   static constexpr int kRateShift = 13;
   static constexpr int kRateHalf = 1 << (kRateShift - 1);
-  static constexpr std::size_t kMostSeen = 255;
   static constexpr std::uint32_t kLeast = 24;
   using Weights = std::array<std::int32_t, kTerms>;
-
-  static constexpr auto kRates = [] {
-    std::array<std::uint16_t, kMostSeen + 1> rates{};
-    for (std::size_t n = 0; n <= kMostSeen; ++n) {
-      rates[n] = static_cast<std::uint16_t>(65536.0 / (static_cast<double>(n) + 1.8));
-    }
-    return rates;
-  }();
-  /// An adaptive probability and how often it has learnt.
-  struct Slot {
-    std::uint16_t p = 32768;
-    std::uint16_t count = 0;
-
-    void learn(bool bit) {
-      const int target = bit ? 65535 : 0;
-      p = static_cast<std::uint16_t>(static_cast<int>(p) +
-                                     (((target - static_cast<int>(p)) * int{kRates[count]}) >> 16));
-      if (count < kMostSeen) ++count;
-    }
-  };
 
   std::uint32_t mask_;
   std::vector<Slot> slots_;

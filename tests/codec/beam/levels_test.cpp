@@ -94,6 +94,35 @@ TEST(BeamLevels, FilledPointsAreMarkedAndNearWhatWasLeftOut) {
   EXPECT_GT(full.f_score[2], 95.0);
 }
 
+TEST(BeamLevels, LonePointsFarFromAllOthersAreKept) {
+  PointCloud cloud = test::spinning_sweep(32, 900, 5);
+  // Every 150th point at a fraction of its range: specks in the air.
+  std::vector<std::size_t> specks;
+  for (std::size_t i = 75; i < cloud.size(); i += 150) {
+    const float range = std::hypot(cloud.x[i], cloud.y[i], cloud.z[i]);
+    if (range < 12.0F) continue;
+    const float share = 6.0F / range;
+    cloud.x[i] *= share;
+    cloud.y[i] *= share;
+    cloud.z[i] *= share;
+    specks.push_back(i);
+  }
+  ASSERT_GT(specks.size(), 10U);
+  Encoder encoder = test::encoder_of(level_options(5));
+  const Bytes frame = test::encode(encoder, cloud);
+  EXPECT_EQ(test::sum_without_input(encoder.last_counts()), cloud.size());
+  const PointCloud decoded = test::decode(frame);
+  for (const std::size_t i : specks) {
+    double nearest = 1e9;
+    for (std::size_t k = 0; k < decoded.size(); ++k) {
+      nearest =
+          std::min<double>(nearest, std::hypot(decoded.x[k] - cloud.x[i], decoded.y[k] - cloud.y[i],
+                                               decoded.z[k] - cloud.z[i]));
+    }
+    EXPECT_LT(nearest, 2.3) << i;  // 8 of the last layer's steps, and half a step
+  }
+}
+
 TEST(BeamLevels, AFrameWithEveryPointHasNothingToFill) {
   const PointCloud cloud = test::spinning_sweep(16, 400, 4);
   Encoder encoder = test::encoder_of(level_options(1));

@@ -235,6 +235,39 @@ TEST(RangeLayers, ThinnedCellsAreFilledWithinTheToleranceOrKept) {
   }
 }
 
+TEST(RangeLayers, EachEffortTakesFewerBytesAndTheFormerBestStillDecodes) {
+  std::mt19937 random(11);
+  const Image image = scene(random, 32, 900, 5);
+  const auto size_of = [&](const LayerPlan& plan) {
+    const Layers layers = encode(plan, image);
+    const Image decoded = decode(plan, layers, layers.size(), false);
+    std::size_t size = 0;
+    for (const auto& layer : layers) size += layer.size();
+    for (std::size_t cell = 0; cell < image.cells(); ++cell) {
+      EXPECT_LE(2 * std::abs(decoded.range[cell] - image.range[cell]), 100) << cell;
+    }
+    return size;
+  };
+  LayerPlan former = plan_of(image, 100, 4, 16, Effort::best);
+  former.former_best = true;
+  const std::size_t normal = size_of(plan_of(image, 100, 4, 16, Effort::normal));
+  const std::size_t best = size_of(plan_of(image, 100, 4, 16, Effort::best));
+  EXPECT_LT(best, size_of(former));
+  EXPECT_LT(100 * best, 98 * normal);
+}
+
+TEST(RangeLayers, TheByteOfACodingTellsItsPlan) {
+  for (std::uint8_t coding = 0; coding < 4; ++coding) {
+    LayerPlan plan;
+    EXPECT_TRUE(set_coding(coding, plan));
+    EXPECT_EQ(coding_of(plan), coding);
+    EXPECT_EQ(plan.effort, static_cast<Effort>(std::min<int>(coding, 2)));
+  }
+  LayerPlan plan;
+  EXPECT_FALSE(set_coding(4, plan));
+  EXPECT_FALSE(set_coding(255, plan));
+}
+
 TEST(RangeLayers, EmptyAndFullImages) {
   std::mt19937 random(4);
   for (const int percent_empty : {0, 100}) {
