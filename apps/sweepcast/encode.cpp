@@ -85,7 +85,7 @@ Status check_names(const std::vector<fs::path>& inputs) {
 }
 
 /// What all inputs go through.
-struct Workspace {
+struct EncodeWorkspace {
   PointCloud cloud;
   std::vector<std::string> skipped_fields;
   InputChecks checks;
@@ -94,7 +94,7 @@ struct Workspace {
 };
 
 Result<Encoded> encode_one(const fs::path& input, const SweepInfo& info, double intensity_step,
-                           Workspace& work) {
+                           EncodeWorkspace& work) {
   Status read = read_cloud(input, work.cloud, &work.skipped_fields);
   if (!read) return tl::unexpected(read.error());
   work.checks.add(input, work.cloud, work.skipped_fields);
@@ -114,7 +114,7 @@ Result<Encoded> encode_one(const fs::path& input, const SweepInfo& info, double 
   return encoded;
 }
 
-void report_json(const std::vector<Encoded>& frames, const Workspace& work) {
+void report_json(const std::vector<Encoded>& frames, const EncodeWorkspace& work) {
   nlohmann::ordered_json report{{"frames", nlohmann::ordered_json::array()},
                                 {"file_bytes", work.writer.size()},
                                 {"dropped_fields", work.checks.dropped_fields()},
@@ -163,7 +163,7 @@ Status encode(const EncodeOptions& options) {
   auto writer = SweepWriter::open(options.output, mode);
   if (!writer) return tl::unexpected(writer.error());
 
-  Workspace work{{}, {}, {}, std::move(*encoder), std::move(*writer)};
+  EncodeWorkspace work{{}, {}, {}, std::move(*encoder), std::move(*writer)};
   std::vector<Encoded> frames;
   Progress progress("encoding", inputs->size());
   for (const fs::path& input : *inputs) {

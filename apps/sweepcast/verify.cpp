@@ -64,7 +64,7 @@ struct ErrorSums {
 };
 
 /// Reads frames and their originals, with buffers that are reused.
-struct Workspace {
+struct VerifyWorkspace {
   std::map<std::string, fs::path> originals;  ///< by base name
   std::vector<std::byte> frame;
   PointCloud original, decoded;
@@ -108,7 +108,7 @@ std::size_t count_filled(const PointCloud& cloud) {
 
 /// The original of this name. A recording that was decoded and encoded again has names that
 /// `decode` made for sweeps that came more than once: NAME-2 and so on.
-Result<fs::path> find_original(const Workspace& work, const std::string& name) {
+Result<fs::path> find_original(const VerifyWorkspace& work, const std::string& name) {
   auto found = work.originals.find(name);
   const std::size_t dash = name.rfind('-');
   if (found == work.originals.end() && dash != std::string::npos && dash + 1 < name.size() &&
@@ -148,7 +148,7 @@ std::string attributes_text(const lab::AttributeErrors& errors) {
   return text;
 }
 
-Result<Verified> verify_one(SweepReader& reader, std::size_t i, Workspace& work) {
+Result<Verified> verify_one(SweepReader& reader, std::size_t i, VerifyWorkspace& work) {
   Verified verified;
   Status status = reader.read(i, work.frame);
   if (status) status = work.decoder.decode(work.frame, work.decoded);
@@ -272,7 +272,7 @@ Status verify(const VerifyOptions& options) {
   }
   const auto clouds = collect_clouds({options.original});
   if (!clouds) return tl::unexpected(clouds.error());
-  Workspace work;
+  VerifyWorkspace work;
   work.decoder = Decoder({.fill = options.fill});
   for (const fs::path& cloud : *clouds) work.originals.emplace(cloud.stem().string(), cloud);
 
