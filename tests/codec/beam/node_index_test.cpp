@@ -39,6 +39,7 @@ std::vector<Node> in_order(std::vector<LatticePoint> points) {
   });
   points.erase(std::unique(points.begin(), points.end()), points.end());
   std::vector<Node> nodes;
+  nodes.reserve(points.size());
   for (const LatticePoint& point : points) nodes.push_back({position_of(point)});
   return nodes;
 }
@@ -64,6 +65,7 @@ void expect_found(const NodeIndex& index, const std::vector<Node>& nodes, std::m
 TEST(NodeIndex, FindsNodesAtAnyPlace) {
   std::mt19937 random(1);
   std::vector<LatticePoint> points;
+  points.reserve(5000);
   for (int i = 0; i < 5000; ++i) points.push_back(random_point(random, -2048));
   const std::vector<Node> nodes = in_order(points);
   NodeIndex index;
