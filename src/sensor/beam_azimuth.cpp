@@ -290,12 +290,14 @@ void fit_lags(std::span<const BeamSamples> sweeps, int ticks_per_turn,
   std::copy(best.begin(), best.end(), beams.begin());
 }
 
-void split_lags(std::span<const BeamSamples> sweeps, int ticks_per_turn,
+void split_lags(std::span<const BeamSamples> sweeps, int ticks_per_turn, HeldFit fit,
                 std::span<BeamAzimuth> beams) {
   const LagFinder finder(sweeps.first(1), ticks_per_turn, beams);
   std::vector<std::int32_t> lags;
   for (const BeamAzimuth& beam : beams) lags.push_back(beam.lag);
-  const auto interpolated = fit_interpolation(finder.ticks(), lags, ticks_per_turn);
+  const auto interpolated = fit == HeldFit::some_beams
+                                ? fit_interpolation(finder.ticks(), lags, ticks_per_turn)
+                                : fit_scattered_holds(finder.ticks(), lags, ticks_per_turn);
   for (std::size_t k = 0; k < beams.size(); ++k) {
     beams[k].lag = lags[k];
     beams[k].interpolated = interpolated[k];

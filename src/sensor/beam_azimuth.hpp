@@ -64,9 +64,15 @@ struct BeamAzimuth {
 void fit_lags(std::span<const BeamSamples> sweeps, int ticks_per_turn,
               std::span<BeamAzimuth> beams);
 
+/// How held firings are looked for.
+enum class HeldFit {
+  some_beams,  ///< by beams whose lags are not interpolated: they fall on the held firing anyway
+  all_beams,   ///< by points that fit no firing, where lags of nearly all beams are interpolated
+};
+
 /// Sets what part of the lags is interpolated, where some firings seem to be held; lags may change
 /// by the distance of two firings.
-void split_lags(std::span<const BeamSamples> sweeps, int ticks_per_turn,
+void split_lags(std::span<const BeamSamples> sweeps, int ticks_per_turn, HeldFit fit,
                 std::span<BeamAzimuth> beams);
 
 }  // namespace sweepcast

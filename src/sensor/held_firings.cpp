@@ -6,11 +6,6 @@
 namespace sweepcast {
 namespace {
 
-std::size_t wrapped(std::int32_t tick, int turn) {
-  tick %= turn;
-  return static_cast<std::size_t>(tick < 0 ? tick + turn : tick);
-}
-
 // A beam's lag, how much of it is interpolated, and how many points that says to be held.
 struct Split {
   std::int32_t lag = 0;
@@ -28,14 +23,14 @@ Split split(std::span<const std::int32_t> ticks, std::int32_t lag,
   std::vector<std::uint8_t> own(firing.size(), 0);
   std::vector<std::int32_t> strays;
   for (const std::int32_t tick : ticks) {
-    const std::size_t at = wrapped(tick - lag, turn);
+    const std::size_t at = wrapped_tick(tick - lag, turn);
     own[at] = 1;
     if (firing[at] == 0) strays.push_back(static_cast<std::int32_t>(at));
   }
   std::vector<std::size_t> score(2 * kReach + 1, 0);
   for (const std::int32_t tick : strays) {
     for (std::int32_t miss = -kReach; miss <= kReach; ++miss) {
-      const std::size_t at = wrapped(tick + miss, turn);
+      const std::size_t at = wrapped_tick(tick + miss, turn);
       if (firing[at] != 0 && own[at] == 0) ++score[static_cast<std::size_t>(miss + kReach)];
     }
   }
@@ -51,7 +46,7 @@ std::vector<std::uint8_t> firings_of(std::span<const std::vector<std::int32_t>> 
   std::vector<std::uint32_t> count(static_cast<std::size_t>(turn), 0);
   std::uint64_t points = 1;
   for (std::size_t k = 0; k < ticks.size(); ++k) {
-    for (const std::int32_t tick : ticks[k]) ++count[wrapped(tick - lags[k], turn)];
+    for (const std::int32_t tick : ticks[k]) ++count[wrapped_tick(tick - lags[k], turn)];
     points += ticks[k].size();
   }
   std::uint64_t squares = 0;
@@ -63,7 +58,8 @@ std::vector<std::uint8_t> firings_of(std::span<const std::vector<std::int32_t>> 
   return firing;
 }
 
-// The commonest number of ticks from one firing to the next, 0 where there are fewer than two.
+}  // namespace
+
 std::int32_t usual_step(std::span<const std::uint8_t> firing) {
   std::vector<std::size_t> steps(firing.size(), 0);
   std::size_t last = firing.size();
@@ -74,8 +70,6 @@ std::int32_t usual_step(std::span<const std::uint8_t> firing) {
   }
   return static_cast<std::int32_t>(std::max_element(steps.begin(), steps.end()) - steps.begin());
 }
-
-}  // namespace
 
 std::vector<std::int32_t> fit_interpolation(std::span<const std::vector<std::int32_t>> ticks,
                                             std::span<std::int32_t> lags, int ticks_per_turn) {
@@ -104,36 +98,55 @@ std::span<const std::uint8_t> HeldFirings::find(std::span<FiringPlace> places,
   held_.assign(turn, 0);
   as_turning_.assign(turn, 0);
   as_held_.assign(turn, 0);
+  near_.assign(turn, 0);
+  number_.assign(turn, 0);
   votes_.assign(turn, 0);
   const auto turning = [](const FiringPlace& place) {
     return static_cast<std::size_t>(place.tick);
   };
   const auto holding = [&](const FiringPlace& place) {
-    return wrapped(place.tick + interpolated[place.beam], ticks_per_turn);
+    return wrapped_tick(place.tick + interpolated[place.beam], ticks_per_turn);
   };
   for (const FiringPlace& place : places) {
     if (place.tick < 0) continue;
     ++as_turning_[turning(place)];
+    for (int off = -kInterpolationJitter; off <= kInterpolationJitter; ++off) {
+      ++near_[wrapped_tick(place.tick + off, ticks_per_turn)];
+    }
     ++as_held_[holding(place)];
   }
-  const auto fits_held = [&](const FiringPlace& place) {
-    return as_held_[holding(place)] > as_turning_[turning(place)];
-  };
+  // Interpolated azimuths jitter, held ones do not.
   for (const FiringPlace& place : places) {
     if (place.tick < 0 || interpolated[place.beam] == 0) continue;
-    if (fits_held(place)) {
+    if (as_held_[holding(place)] > near_[turning(place)]) {
       ++votes_[holding(place)];
     } else {
       --votes_[turning(place)];
     }
   }
-  for (std::size_t t = 0; t < turn; ++t) held_[t] = votes_[t] > 0 ? 1 : 0;
+  std::size_t count = 0;  // of held firings
+  for (std::size_t t = 0; t < turn; ++t) {
+    held_[t] = votes_[t] > 0 ? 1 : 0;
+    number_[t] = static_cast<std::int32_t>(count);
+    count += held_[t];
+  }
+  has_point_.assign(count * interpolated.size(), 0);
   for (FiringPlace& place : places) {
     if (place.tick < 0 || interpolated[place.beam] == 0) continue;
     const bool may_turn = held_[turning(place)] == 0;
-    const bool may_hold = held_[holding(place)] != 0;
-    if (may_hold && (fits_held(place) || !may_turn)) {
+    std::uint8_t* const has_point =
+        held_[holding(place)] == 0
+            ? nullptr
+            : &has_point_[static_cast<std::size_t>(number_[holding(place)]) * interpolated.size() +
+                          place.beam];
+    // A beam's second point may be another firing's that lies there too.
+    const bool may_be_other =
+        may_turn && 4 * as_turning_[turning(place)] > as_held_[holding(place)];
+    const bool may_hold = has_point != nullptr && (*has_point == 0 || !may_be_other);
+    const bool fits_held = as_held_[holding(place)] > as_turning_[turning(place)];
+    if (may_hold && (fits_held || !may_turn)) {
       place.tick = static_cast<std::int32_t>(holding(place));
+      *has_point = 1;
     } else if (!may_turn) {
       place.tick = -1;
     }

@@ -260,17 +260,28 @@ Jitter find_jitter(const BeamSamples& sweep, const SensorModel& model) {
   return best;
 }
 
-// Where a driver holds firings the columns get fewer by a model that knows.
+// Where a driver holds firings, by a model that knows columns get fewer, or as few with less
+// jitter.
 void look_for_held_firings(const Samples& samples, const std::vector<BeamLine>& lines,
-                           std::vector<BeamAzimuth>& azimuths, SensorModel& model) {
-  const Jitter plain = find_jitter(samples.sweeps.front(), model);
-  model.jitter = plain.ticks;
-  split_lags(samples.sweeps, model.ticks_per_turn, azimuths);
-  SensorModel split = model_of(lines, azimuths, model.ticks_per_turn);
-  if (interpolated_lags(split).empty()) return;
-  const Jitter found = find_jitter(samples.sweeps.front(), split);
-  split.jitter = found.ticks;
-  if (10 * found.apart < 9 * plain.apart) model = std::move(split);
+                           const std::vector<BeamAzimuth>& azimuths, SensorModel& model) {
+  Jitter best = find_jitter(samples.sweeps.front(), model);
+  model.jitter = best.ticks;
+  for (const HeldFit fit : {HeldFit::some_beams, HeldFit::all_beams}) {
+    // What lies scattered looks like jitter.
+    if (fit == HeldFit::all_beams && best.ticks == 0) break;
+    std::vector<BeamAzimuth> split_azimuths = azimuths;
+    split_lags(samples.sweeps, model.ticks_per_turn, fit, split_azimuths);
+    SensorModel split = model_of(lines, split_azimuths, model.ticks_per_turn);
+    if (interpolated_lags(split).empty()) continue;
+    const Jitter found = find_jitter(samples.sweeps.front(), split);
+    split.jitter = found.ticks;
+    const bool fewer = 10 * found.apart < 9 * best.apart;
+    const bool steadier = found.ticks < best.ticks && 2 * found.ticks <= best.ticks &&
+                          50 * found.columns <= 51 * best.columns;
+    if (!fewer && !steadier) continue;
+    model = std::move(split);
+    best = found;
+  }
 }
 
 }  // namespace

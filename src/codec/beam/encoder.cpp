@@ -25,8 +25,8 @@ constexpr int kBaseCols = 16;
 // it gives the fewest bytes in all, within 2 % on every sensor's sweeps.
 constexpr double kLosslessError = 0.01;
 
-// How often a crowded sweep is coded with more points as extras.
-constexpr int kMostTries = 4;
+// How often it is estimated which points of a crowded sweep had better be extras.
+constexpr int kMostTries = 3;
 // After how many frames that is done again.
 constexpr int kReviewInterval = 10;
 
@@ -172,13 +172,19 @@ void Encoder::write_smallest(const CloudView& cloud, const SweepInfo& info, Part
     write_sweep(cloud, parts, counts);
     return keep_smaller(choice);
   };
-  for (int tries = 0; tries < kMostTries; ++tries) {
+  bool saves = true;
+  for (int tries = 0; tries < kMostTries && saves; ++tries) {
     const std::int32_t range = crowded_range(imager_.image(), imager_.x(), imager_.y(), imager_.z(),
                                              step, range_bytes(parts));
     if (range == 0) break;
     if (tries == 0) keep_smaller({});
-    imager_.move_nearer(range);
-    if (!try_again(kept, {range, false})) break;
+    saves = false;
+    for (const std::int32_t within : {range / 4 * 3, range, range / 3 * 4}) {  // it is rough
+      const bool saved = saves;
+      imager_.move_nearer(within);
+      saves = try_again(kept, {within, false});
+      if (saved && !saves) break;
+    }
   }
   if (least == 0) return;  // no crowd
   if (extras_.nearer > 0) {

@@ -1,6 +1,7 @@
 // What lies around a cube of an octree: finding its neighbours, and their children beside it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -164,17 +165,28 @@ struct ChildView {
 
 inline constexpr std::uint32_t kNoNode = 0xFFFFFFFF;
 
-/// Finds nodes by their position: a hash table with open addressing, kept at most half full.
+/// Finds nodes by their position: a hash table with open addressing, kept at most half full. The
+/// hash is the same everywhere, so that bytes can be crafted whose nodes all want the same slots:
+/// what finds none within a few is looked for by its order instead.
 class NodeIndex {
  public:
-  /// `nodes`: anything with a position `at`.
+  static constexpr std::size_t kMostProbes = 32;
+
+  /// `nodes`: anything with a position `at`, in the order of the positions' Morton codes, x
+  /// highest, where positions that wrapped round below 0 come first.
   template <class Node>
   void build(const std::vector<Node>& nodes) {
     slots_.assign(std::bit_ceil(2 * nodes.size() + 1), kNoNode);
+    crowded_out_ = 0;
     for (std::uint32_t i = 0; i < nodes.size(); ++i) {
       std::size_t slot = first_slot(nodes[i].at);
-      while (slots_[slot] != kNoNode) slot = (slot + 1) & (slots_.size() - 1);
-      slots_[slot] = i;
+      std::size_t probes = 1;
+      for (; probes <= kMostProbes && slots_[slot] != kNoNode; ++probes) slot = next(slot);
+      if (probes <= kMostProbes) {
+        slots_[slot] = i;
+      } else {
+        ++crowded_out_;
+      }
     }
   }
 
@@ -182,15 +194,44 @@ class NodeIndex {
   template <class Node>
   [[nodiscard]] std::uint32_t find(const std::vector<Node>& nodes, const CubePosition& at) const {
     std::size_t slot = first_slot(at);
-    while (slots_[slot] != kNoNode && !same(nodes[slots_[slot]].at, at)) {
-      slot = (slot + 1) & (slots_.size() - 1);
+    for (std::size_t probe = 0; probe < kMostProbes; ++probe, slot = next(slot)) {
+      if (slots_[slot] == kNoNode || same(nodes[slots_[slot]].at, at)) return slots_[slot];
     }
-    return slots_[slot];
+    return crowded_out_ == 0 ? kNoNode : find_by_order(nodes, at);
   }
+
+  /// How many nodes are found by their order alone.
+  [[nodiscard]] std::size_t crowded_out() const { return crowded_out_; }
 
  private:
   static bool same(const CubePosition& a, const CubePosition& b) {
     return ((a[0] ^ b[0]) | (a[1] ^ b[1]) | (a[2] ^ b[2])) == 0;
+  }
+
+  // By the axis whose coordinates differ in the highest bit.
+  static bool comes_before(const CubePosition& a, const CubePosition& b) {
+    constexpr std::uint32_t kSign = 0x80000000U;
+    std::size_t axis = 0;
+    for (std::size_t other = 1; other < 3; ++other) {
+      const std::uint32_t here = a[axis] ^ b[axis];
+      const std::uint32_t there = a[other] ^ b[other];
+      if (std::bit_width(there) > std::bit_width(here)) axis = other;
+    }
+    return (a[axis] ^ kSign) < (b[axis] ^ kSign);
+  }
+
+  template <class Node>
+  [[nodiscard]] static std::uint32_t find_by_order(const std::vector<Node>& nodes,
+                                                   const CubePosition& at) {
+    const auto found = std::lower_bound(
+        nodes.begin(), nodes.end(), at,
+        [](const Node& node, const CubePosition& wanted) { return comes_before(node.at, wanted); });
+    if (found == nodes.end() || !same(found->at, at)) return kNoNode;
+    return static_cast<std::uint32_t>(found - nodes.begin());
+  }
+
+  [[nodiscard]] std::size_t next(std::size_t slot) const {
+    return (slot + 1) & (slots_.size() - 1);
   }
 
   [[nodiscard]] std::size_t first_slot(const CubePosition& at) const {
@@ -201,6 +242,7 @@ class NodeIndex {
   }
 
   std::vector<std::uint32_t> slots_;
+  std::size_t crowded_out_ = 0;
 };
 
 }  // namespace sweepcast::beam

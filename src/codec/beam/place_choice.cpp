@@ -81,10 +81,11 @@ class PlaceChooser {
   // Shares the points out among the places that are taken, in the order in which these are coded:
   // each gets a round number between those that it must have and those that it may have.
   void share(std::vector<LatticePoint>& places) {
-    std::vector<std::uint32_t> last(placed_.size());  // the last place that would do
+    // Of each point, how many places that would do are still to come.
+    std::vector<std::uint32_t> to_come(placed_.size(), 0);
     for (std::uint32_t i = 0; i < candidates_.size(); ++i) {
       if (!candidates_[i].taken) continue;
-      for (const Offer& offer : offers_of(i)) last[offer.point] = i;
+      for (const Offer& offer : offers_of(i)) ++to_come[offer.point];
     }
     std::fill(placed_.begin(), placed_.end(), std::uint8_t{0});
     std::vector<Offer> open;
@@ -92,11 +93,14 @@ class PlaceChooser {
       if (!candidates_[i].taken) continue;
       open.clear();
       for (const Offer& offer : offers_of(i)) {
+        --to_come[offer.point];
         if (placed_[offer.point] == 0) open.push_back(offer);
       }
-      const auto must = std::partition(open.begin(), open.end(),
-                                       [&](const Offer& offer) { return last[offer.point] == i; });
-      std::sort(must, open.end(), [](const Offer& a, const Offer& b) {
+      const auto must = std::partition(
+          open.begin(), open.end(), [&](const Offer& offer) { return to_come[offer.point] == 0; });
+      // Those that have fewer places to come first, so that later places have more of a choice.
+      std::sort(must, open.end(), [&](const Offer& a, const Offer& b) {
+        if (to_come[a.point] != to_come[b.point]) return to_come[a.point] < to_come[b.point];
         return a.distance != b.distance ? a.distance < b.distance : a.point < b.point;
       });
       const std::size_t count =
@@ -133,7 +137,7 @@ class PlaceChooser {
   // Measured on seven sensors' sweeps.
   [[nodiscard]] std::uint64_t worth(std::uint32_t i) const {
     const Candidate& candidate = candidates_[i];
-    return candidate.open * (std::uint64_t{10} + 8 * std::uint64_t{candidate.faces} +
+    return candidate.open * (std::uint64_t{5} + 20 * std::uint64_t{candidate.faces} +
                              2 * std::uint64_t{candidate.nearest});
   }
 
