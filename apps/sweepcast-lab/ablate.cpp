@@ -32,6 +32,7 @@ struct AblateCommand {
   std::vector<double> steps{0.5, 0.5};
   std::string codec = "rcpcc";
   double max_error_m = 0.05;
+  std::string effort = "default";
   std::string quantiser = "nearest";
   double threshold_m = 0.3;
   RcpccOptions rcpcc;
@@ -133,6 +134,9 @@ Status ablate_stages(const AblateCommand& options) {
   if (!sweeps) return tl::unexpected(sweeps.error());
   lab::StageAblationOptions ablation;
   ablation.max_error_m = options.max_error_m;
+  ablation.effort = options.effort == "fast"   ? Effort::fast
+                    : options.effort == "best" ? Effort::best
+                                               : Effort::normal;
   Progress progress("measuring", sweeps->size());
   ablation.on_sweep = [&progress](std::string_view name) { progress.step(name); };
   const auto rows = lab::ablate_stages(*sweeps, ablation);
@@ -197,6 +201,9 @@ void add_ablate(CLI::App& app, Command& command) {
   sub->add_option("--max-error", options->max_error_m, "Codec beam: bound in metres [0.05]")
       ->check(number_between(0.001, 2.0))
       ->type_name("METRES");
+  sub->add_option("--effort", options->effort,
+                  "Codec beam: time spent to save bytes, fast, default or best [default]")
+      ->check(CLI::IsMember({"fast", "default", "best"}));
   sub->add_option("--params", options->steps, "Steps of the range image in degrees [0.5,0.5]")
       ->delimiter(',')
       ->expected(2)

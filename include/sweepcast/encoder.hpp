@@ -73,7 +73,7 @@ struct RcpccOptions {
 enum class Effort : std::uint8_t {
   fast,    ///< one context a decision
   normal,  ///< several, mixed
-  best,    ///< more of them
+  best,    ///< many, mixed twice: four times the time
 };
 
 /// Which of a cloud's fields are coded.

@@ -187,7 +187,7 @@ class DeepResidualCoder {
   std::array<std::int32_t, 3> last_{};  ///< steps of the cells before in the run, the last first
   Mixer zero_{kTableBits, 48, 256, 160};
   Mixer sign_{kTableBits, 6, 512, 256};
-  Mixer size_{kTableBits, kUnary, 128, kUnary * 16};
+  Mixer size_{kTableBits, kUnary, 128, std::size_t{kUnary} * 16};
 };
 
 }  // namespace sweepcast::beam

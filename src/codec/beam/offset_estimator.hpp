@@ -51,7 +51,7 @@ class OffsetEstimator {
     read(cell);
     const std::int32_t basis = cell.predictions.basis[cell.i];
     const std::size_t kind = basis == 0 ? 0 : basis == static_cast<int>(Basis::side) ? 1 : 2;
-    now_ = &weights_[cell.step * 3 + kind];
+    now_ = &weights_[std::size_t{cell.step} * 3 + kind];
     std::int32_t sum = 0;
     for (std::size_t k = 0; k < kSigns; ++k) sum += signs_[k] * (*now_)[k];
     return std::clamp(sum >> 16, -128, 128);

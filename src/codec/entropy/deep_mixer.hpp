@@ -42,7 +42,7 @@ class DeepMixer {
     std::fill(slots_.begin(), slots_.end(), Slot{});
     Weights fresh{};
     fresh.fill(kFirstWeight);
-    fresh[kTerms - 1] = 0;
+    fresh.back() = 0;
     std::fill(first_.begin(), first_.end(), fresh);
     std::fill(second_.begin(), second_.end(), fresh);
     std::fill(curves_.begin(), curves_.end(), kStraight);
@@ -63,7 +63,7 @@ class DeepMixer {
       slots[i] = &slots_[i * (std::size_t{mask_} + 1) + (at.contexts[i] & mask_)];
       terms[kGiven + i] = stretch(slots[i]->p);
     }
-    terms[kTerms - 1] = 256;
+    terms[kTerms - 1] = kLogisticOne;  // its weight says what bits are as a rule
     Weights& first = first_[at.first_set];
     Weights& second = second_[at.second_set];
     const std::int32_t by_first = mix(terms, first);
@@ -89,7 +89,7 @@ class DeepMixer {
 
  private:
   static constexpr std::size_t kTerms = kGiven + kContexts + 1;
-  static constexpr std::int32_t kFirstWeight = 115000 / static_cast<int>(kTerms);
+  static constexpr std::int32_t kFirstWeight = 115'000 / static_cast<int>(kTerms);
   static constexpr int kWeightBits = 16;
   static constexpr int kRateShift = 15;
   static constexpr int kCurveShift = 6;
