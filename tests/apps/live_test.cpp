@@ -72,6 +72,38 @@ TEST_F(LiveTool, ASenderEndsCleanlyWithoutAReceiver) {
   EXPECT_EQ(run("decode kept.sweep -o kept").exit_status, 0);
 }
 
+TEST_F(LiveTool, WhatHasAnEndWaitsForTheReceiver) {
+  // The port of a receiver that is not there yet: it was, a moment ago.
+  const Outcome outcome = shell(
+      receiving("first") +
+      "kill -TERM $R; wait $R; \"$SWEEPCAST\" send sweeps --to 127.0.0.1:$PORT --key k --rate 20 "
+      "--deadline 10000 --wait 60 --strategy fixed:1 --json >sent & S=$!; "
+      "\"$SWEEPCAST\" receive --listen $PORT --keys k -o got 2>/dev/null & R=$!; "
+      "wait $S; echo $?; kill -TERM $R; wait $R; echo $?");
+  EXPECT_EQ(outcome.out, "0\n0\n") << outcome.err;
+  EXPECT_NE(read("sent").find("\"sent\": 3"), std::string::npos) << read("sent");
+  EXPECT_EQ(run("info got/rover/lidar.sweep --json").json()["frames"].size(), 3U);
+  expect_failure(run("send sweeps --to 127.0.0.1:9 --key k --wait 0"), 1,
+                 {"127.0.0.1:9", "never connected"});
+}
+
+TEST_F(LiveTool, LevelsAreChosenForClouds) {
+  const Outcome outcome = shell(
+      receiving("got") +
+      "for s in paper mpc; do \"$SWEEPCAST\" send sweeps --to 127.0.0.1:$PORT --key k "
+      "--deadline 10000 --sensor $s --strategy $s >/dev/null; done; \"$SWEEPCAST\" send sweeps "
+      "--to 127.0.0.1:$PORT --key k --deadline 10000 --sensor plan --codec rcpcc >/dev/null; "
+      "kill -TERM $R; wait $R; echo $?");
+  EXPECT_EQ(outcome.out, "0\n") << outcome.err;
+  for (const char* sensor : {"paper", "mpc", "plan"}) {
+    const std::string file = std::string("got/rover/") + sensor + ".sweep";
+    EXPECT_EQ(run("info " + file + " --json").json()["frames"].size(), 3U) << sensor;
+    EXPECT_EQ(run("decode " + file + " -o " + sensor).exit_status, 0);
+  }
+  expect_failure(run("send room.sweep --to 127.0.0.1:9 --key k --strategy mpc"), 1,
+                 {"room.sweep", "budget"});
+}
+
 TEST_F(LiveTool, MistakesAreNamed) {
   expect_failure(run("keygen k --robot rover"), 1, {"k: ", "exists already"});
   expect_failure(run("keygen x --robot ../up"), 1, {"robot's name"});
