@@ -230,6 +230,7 @@ void Sending::report() const {
 }
 
 Status send(const SendOptions& options) {
+  stop_on_signals();  // before anything is written
   const auto address = parse_address(options.to);
   if (!address) return tl::unexpected(address.error());
   const auto keys = read_link_keys(options.key_file);
@@ -249,7 +250,6 @@ Status send(const SendOptions& options) {
   sender_options.rate_hz = options.rate_hz;
   auto sender = Sender::start(std::move(sender_options));
   if (!sender) return tl::unexpected(sender.error());
-  stop_on_signals();
   return Sending(options, std::move(*feeds), std::move(*sender)).run();
 }
 
