@@ -24,12 +24,12 @@ using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
 constexpr Microseconds kReportTimeout = 1'500'000;  // then the receiver counts as gone
-constexpr Microseconds kBurst = 5'000;              // what pacing may catch up with
+constexpr Microseconds kBurst = 12'000;             // what pacing may catch up with
 constexpr std::size_t kWireHead = 44;               // SRT, UDP and IPv4 heads of a packet
 constexpr double kUnderWay_s = 0.15;                // of packets at the pace, and a round trip
 constexpr double kLeastUnderWay = 16;               // packets
 constexpr int kReceiveTimeout_ms = 50;
-constexpr microseconds kShortestSleep{4'000};  // several packets a wake-up: waking costs more
+constexpr microseconds kShortestSleep{10'000};  // several packets a wake-up: waking costs more
 constexpr milliseconds kRetry{100};
 constexpr milliseconds kBufferFull{2};
 constexpr milliseconds kExpiryCheck{20};
