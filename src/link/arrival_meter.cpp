@@ -13,11 +13,11 @@ void ArrivalMeter::add(std::uint64_t counter, std::uint32_t sent_us, std::size_t
                        Microseconds now) {
   if (last_ && counter <= last_->counter) return;
   const std::uint32_t raw = static_cast<std::uint32_t>(now) - sent_us;
-  Microseconds delay = wrapped_difference(raw, reference_us_);
+  const Microseconds delay = wrapped_difference(raw, reference_us_);
   const bool jumped = last_ && (now < last_->arrived || std::abs(delay - least()) > kJump);
   if (!last_ || jumped) {
     reference_us_ = raw;
-    delay = least_now_ = least_before_ = 0;
+    least_now_ = least_before_ = 0;
     span_began_ = now;
     last_ = {counter, sent_us, now};
     return;

@@ -43,6 +43,8 @@ class RateControl {
   /// The pace at which packets are to leave, bytes a second: somewhat more than the link is thought
   /// to carry, so that it shows what it does carry.
   [[nodiscard]] double pace() const;
+  /// What the link is thought to carry, bytes a second.
+  [[nodiscard]] double rate() const { return rate_.bytes_per_s(); }
   [[nodiscard]] SendOrder order() const { return strategy_->order(); }
 
  private:

@@ -26,8 +26,8 @@ using std::chrono::steady_clock;
 constexpr Microseconds kReportTimeout = 1'500'000;  // then the receiver counts as gone
 constexpr Microseconds kBurst = 12'000;             // what pacing may catch up with
 constexpr std::size_t kWireHead = 44;               // SRT, UDP and IPv4 heads of a packet
-constexpr double kUnderWay_s = 0.15;                // of packets at the pace, and a round trip
-constexpr double kLeastUnderWay = 16;               // packets
+constexpr double kUnderWay_s = 0.1;   // of packets at the link's rate, and a round trip
+constexpr double kLeastUnderWay = 8;  // packets
 constexpr int kReceiveTimeout_ms = 50;
 constexpr microseconds kShortestSleep{10'000};  // several packets a wake-up: waking costs more
 constexpr milliseconds kRetry{100};
@@ -234,10 +234,9 @@ Microseconds Sender::State::send_next(Microseconds now, Microseconds due) {
   if (!fragment) return due;
   // What is under way cannot be taken back: as little as fills the link, so that after an outage
   // fresh sweeps need not wait for stale packets.
-  const double rate = control.pace();
-  const double trip = observer.state(now).round_trip_s;
+  const double trip = std::min(observer.state(now).least_round_trip_s, kUnderWay_s);
   const double fills =
-      rate * (kUnderWay_s + std::min(trip, kUnderWay_s)) / static_cast<double>(kMostPacketBytes);
+      control.rate() * (kUnderWay_s + trip) / static_cast<double>(kMostPacketBytes);
   const auto under_way = static_cast<double>(packets_under_way(session->socket));
   if (under_way > std::max(kLeastUnderWay, fills)) {
     return now + microseconds(kBufferFull).count();
@@ -249,7 +248,7 @@ Microseconds Sender::State::send_next(Microseconds now, Microseconds due) {
   outbox.pop();
   ++status.packets;
   status.bytes += packet.size();
-  const double time = static_cast<double>(packet.size() + kWireHead) * 1e6 / rate;
+  const double time = static_cast<double>(packet.size() + kWireHead) * 1e6 / control.pace();
   return std::max(due, now - kBurst) + static_cast<Microseconds>(time);
 }
 
