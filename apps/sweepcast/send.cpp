@@ -33,7 +33,7 @@ struct SendOptions {
   EncoderOptions encoder;
   double rate_hz = 10.0;
   int deadline_ms = 250;
-  int wait_s = 10;
+  std::optional<int> wait_s;  ///< none: 10, but not where it loops
   bool loop = false;
   bool json = false;
 };
@@ -94,7 +94,8 @@ class Sending {
 /// What has an end loses nothing to the time in which the connection is made.
 Status Sending::wait_for_connection() {
   constexpr std::chrono::milliseconds kCheck{20};
-  const auto end = steady_clock::now() + std::chrono::seconds(options_.wait_s);
+  constexpr int kWait_s = 10;
+  const auto end = steady_clock::now() + std::chrono::seconds(options_.wait_s.value_or(kWait_s));
   StatusLine line;
   while (!sender_.status().connected && !wait_for_stop(steady_clock::now() + kCheck)) {
     if (steady_clock::now() < end) {
@@ -164,7 +165,7 @@ Status Sending::run() {
     server = std::move(*started);
   }
   Status status;
-  if (!options_.loop) status = wait_for_connection();
+  if (!options_.loop || options_.wait_s) status = wait_for_connection();
   if (status) status = send_all();
   sender_.finish();
   server.reset();
@@ -286,7 +287,7 @@ void add_send(CLI::App& app, Command& command) {
       ->check(CLI::Range(10, 10'000).description(""))
       ->type_name("MS");
   sub->add_option("--wait", options->wait_s,
-                  "How long to wait for a receiver before the first sweep, s; not with --loop [10]")
+                  "How long to wait for a receiver before the first sweep, s [10; with --loop 0]")
       ->check(CLI::Range(0, 86'400).description(""))
       ->type_name("S");
   sub->add_option_function<std::string>(

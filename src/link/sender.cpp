@@ -26,7 +26,7 @@ using std::chrono::steady_clock;
 constexpr Microseconds kReportTimeout = 1'500'000;  // then the receiver counts as gone
 constexpr Microseconds kBurst = 12'000;             // what pacing may catch up with
 constexpr std::size_t kWireHead = 44;               // SRT, UDP and IPv4 heads of a packet
-constexpr double kUnderWay_s = 0.1;   // of packets at the link's rate, and a round trip
+constexpr double kUnderWay_s = 0.15;  // of packets at the link's rate, and a round trip
 constexpr double kLeastUnderWay = 8;  // packets
 constexpr int kReceiveTimeout_ms = 50;
 constexpr microseconds kShortestSleep{10'000};  // several packets a wake-up: waking costs more

@@ -25,5 +25,11 @@ TEST_F(Soak, StreamingComesBackAfterFaults) {
   }
 }
 
+TEST_F(Soak, SweepsArriveOverABadLink) {
+  const Outcome outcome = shell("'" SWEEPCAST_SOURCE "/bench/soak/link' --short room.sweep");
+  EXPECT_EQ(outcome.exit_status, 0) << outcome.out << outcome.err;
+  EXPECT_NE(outcome.out.find("dropped before they left"), std::string::npos) << outcome.out;
+}
+
 }  // namespace
 }  // namespace sweepcast::test

@@ -87,9 +87,7 @@ Arrivals::Arrivals(SweepStore store) : state_(std::make_shared<State>(std::move(
 }
 
 Arrivals::~Arrivals() {
-  const std::scoped_lock lock(state_->mutex);
-  state_->is_closing = true;
-  state_->changed.notify_all();
+  (void)close();
 }
 
 void Arrivals::take(const ReceivedSweep& sweep) {

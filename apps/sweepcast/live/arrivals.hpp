@@ -20,13 +20,14 @@ class Arrivals {
   explicit Arrivals(SweepStore store);
   Arrivals(const Arrivals&) = delete;
   Arrivals& operator=(const Arrivals&) = delete;
+  /// Closes, if that was not done.
   ~Arrivals();
 
   /// Takes a sweep; never waits for the disk. The first sweep of several that cannot be written is
   /// told on standard error.
   void take(const ReceivedSweep& sweep);
 
-  /// Writes what waits, and the indices. To be called once, when nothing more comes.
+  /// Writes what waits, and the indices; to be called when nothing more comes.
   /// Errors: those of `SweepStore::close`; io (some sweeps could not be written, or writing did not
   /// come to an end within 10 s).
   [[nodiscard]] Status close();
