@@ -1,5 +1,6 @@
 #include "common/interruption.hpp"
 
+#include <array>
 #include <condition_variable>
 #include <csignal>
 #include <cstdlib>
@@ -11,19 +12,23 @@
 namespace sweepcast::app {
 namespace {
 
-/// Whether somebody made us ignore this signal, as nohup does with SIGHUP.
-bool is_ignored(int signal) {
-  struct sigaction action {};
-  return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
-}
+using std::chrono::steady_clock;
 
-/// The signals to wait for: those that are not ignored; and SIGINT, which a shell makes the
-/// programs ignore that a script starts with &, and which may be meant for them all the same.
-sigset_t ending_signals() {
+/// `timeout` and its like send a signal to the process and again to its group: what comes so soon
+/// after the first is the same request.
+constexpr std::chrono::seconds kSameRequest{1};
+
+constexpr std::array<int, 3> kSignals{SIGINT, SIGTERM, SIGHUP};
+
+/// Those of them that somebody made us ignore, as nohup does.
+sigset_t ignored_signals() {
   sigset_t set;
   sigemptyset(&set);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    if (signal == SIGINT || !is_ignored(signal)) sigaddset(&set, signal);
+  for (const int signal : kSignals) {
+    struct sigaction action {};
+    if (sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN) {
+      sigaddset(&set, signal);
+    }
   }
   return set;
 }
@@ -34,6 +39,7 @@ struct StopRequest {
   std::condition_variable came;
   bool is_awaited = false;
   bool has_come = false;
+  steady_clock::time_point at;  ///< when it came
 };
 
 StopRequest& stop_request() {
@@ -42,19 +48,25 @@ StopRequest& stop_request() {
 }
 
 /// False where the signal is to end the program.
-bool take_as_request() {
+bool take_as_request(int signal, const sigset_t& ignored) {
   StopRequest& request = stop_request();
   const std::scoped_lock lock(request.mutex);
-  if (!request.is_awaited || request.has_come) return false;
+  // A shell makes what it starts in the background ignore SIGINT; a command that goes on until it
+  // is told to stop has to be told somehow.
+  const bool is_heard = request.is_awaited && signal != SIGHUP;
+  if (sigismember(&ignored, signal) == 1 && !is_heard) return true;
+  if (!request.is_awaited) return false;
+  if (request.has_come) return steady_clock::now() - request.at < kSameRequest;
   request.has_come = true;
+  request.at = steady_clock::now();
   request.came.notify_all();
   return true;
 }
 
 /// A thread of its own, and no signal handler, may lock and allocate as removing needs.
-[[noreturn]] void wait_for_end(const sigset_t& signals) {
+[[noreturn]] void wait_for_end(const sigset_t& signals, const sigset_t& ignored) {
   int signal = 0;
-  while (sigwait(&signals, &signal) != 0 || take_as_request() || is_ignored(signal)) {
+  while (sigwait(&signals, &signal) != 0 || take_as_request(signal, ignored)) {
   }
   remove_unfinished();
   std::signal(signal, SIG_DFL);
@@ -66,6 +78,7 @@ bool take_as_request() {
 }  // namespace
 
 void stop_on_signals() {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file at its limit is an error of writing, as a full disk is
   const std::scoped_lock lock(stop_request().mutex);
   stop_request().is_awaited = true;
 }
@@ -82,9 +95,12 @@ bool wait_for_stop(std::chrono::steady_clock::time_point until) {
 }
 
 void remove_unfinished_on_signals() {
-  const sigset_t signals = ending_signals();
+  const sigset_t ignored = ignored_signals();
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int signal : kSignals) sigaddset(&signals, signal);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  std::thread([signals] { wait_for_end(signals); }).detach();
+  std::thread([signals, ignored] { wait_for_end(signals, ignored); }).detach();
 }
 
 }  // namespace sweepcast::app

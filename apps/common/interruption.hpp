@@ -12,8 +12,10 @@ namespace sweepcast::app {
 void remove_unfinished_on_signals();
 
 /// From here on the first such signal ends nothing: `stop_requested` says that it came, for a
-/// command that goes on until it is told to stop; SIGINT does so even where it is ignored. A second
-/// one ends the program as above.
+/// command that goes on until it is told to stop. One that comes a second later or more ends the
+/// program as above. SIGINT and SIGTERM count even where the caller made us ignore them, as a shell
+/// does with SIGINT for what it starts in the background. Files that reach their largest size
+/// (SIGXFSZ) give an error when they are written.
 void stop_on_signals();
 [[nodiscard]] bool stop_requested();
 /// Waits until then, or until there is a signal. True where there is one.

@@ -2,7 +2,6 @@
 #include <fmt/core.h>
 
 #include <memory>
-#include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -10,8 +9,8 @@
 #include "common/interruption.hpp"
 #include "sweepcast/commands.hpp"
 #include "sweepcast/link.hpp"
+#include "sweepcast/live/arrivals.hpp"
 #include "sweepcast/live/metrics.hpp"
-#include "sweepcast/live/sweep_store.hpp"
 
 namespace sweepcast::app {
 namespace {
@@ -22,52 +21,6 @@ struct ReceiveOptions {
   std::string output;
   std::string metrics;
   bool json = false;
-};
-
-/// Takes sweeps from the receiver's thread, and is asked from others.
-class Arrivals {
- public:
-  explicit Arrivals(SweepStore store) : store_(std::move(store)) {}
-
-  void take(const ReceivedSweep& sweep) {
-    const std::scoped_lock lock(mutex_);
-    bytes_ += sweep.frame.size();
-    last_ = fmt::format("{}/{}", sweep.robot, sweep.sensor);
-    Status added = store_.add(sweep);
-    if (added) {
-      failing_ = false;
-      ++written_;
-      return;
-    }
-    ++lost_;
-    if (!failing_) print_error(added.error().message + "; receiving goes on");
-    failing_ = true;
-  }
-
-  [[nodiscard]] Status close() {
-    const std::scoped_lock lock(mutex_);
-    Status closed = store_.close();
-    if (!closed || lost_ == 0) return closed;
-    return fail(ErrorCode::io, fmt::format("{} of {} sweeps could not be written; those that were "
-                                           "are whole",
-                                           lost_, lost_ + written_));
-  }
-
-  struct Figures {
-    std::uint64_t written = 0, lost = 0, bytes = 0;
-    std::string last;
-  };
-  [[nodiscard]] Figures figures() const {
-    const std::scoped_lock lock(mutex_);
-    return {written_, lost_, bytes_, last_};
-  }
-
- private:
-  mutable std::mutex mutex_;
-  SweepStore store_;
-  std::uint64_t written_ = 0, lost_ = 0, bytes_ = 0;
-  std::string last_;
-  bool failing_ = false;
 };
 
 std::vector<Metric> metrics_of(const ReceiverStatus& s, const Arrivals::Figures& f) {
@@ -82,6 +35,7 @@ std::vector<Metric> metrics_of(const ReceiverStatus& s, const Arrivals::Figures&
       {"sweepcast_sweeps_missed_total", "Sweeps with none", number(s.sweeps_missed)},
       {"sweepcast_sweeps_written_total", "Sweeps written", number(f.written)},
       {"sweepcast_sweeps_unwritten_total", "Sweeps that could not be", number(f.lost)},
+      {"sweepcast_unwritten_bytes", "Bytes that wait for the disk", number(f.waiting_bytes)},
       {"sweepcast_frame_bytes_total", "Bytes of frames delivered", number(f.bytes)},
       {"sweepcast_packets_total", "Authentic packets", number(s.packets)},
       {"sweepcast_bytes_total", "Bytes of them", number(s.bytes)},
@@ -111,6 +65,7 @@ void report(const ReceiverStatus& s, const Arrivals::Figures& f, bool json) {
 }
 
 Status receive(ReceiveOptions& options) {
+  stop_on_signals();  // before anything is written
   auto keys = read_link_keys(options.keys_file);
   if (!keys) return tl::unexpected(keys.error());
   options.receiver.keys = std::move(*keys);
@@ -129,7 +84,6 @@ Status receive(ReceiveOptions& options) {
     if (!serving) return tl::unexpected(serving.error());
     server = std::move(*serving);
   }
-  stop_on_signals();
   print_note(fmt::format("listening at {}:{}", options.receiver.address, receiver->port()));
   constexpr std::chrono::milliseconds kInterval{500};
   {

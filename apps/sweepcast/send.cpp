@@ -10,11 +10,11 @@
 
 #include "common/interruption.hpp"
 #include "common/validators.hpp"
+#include "rate/strategy.hpp"
 #include "sweepcast/commands.hpp"
-#include "sweepcast/encoder.hpp"
 #include "sweepcast/link.hpp"
+#include "sweepcast/live/feed.hpp"
 #include "sweepcast/live/metrics.hpp"
-#include "sweepcast/live/sweep_source.hpp"
 #include "sweepcast/sweep_file.hpp"
 
 namespace sweepcast::app {
@@ -33,31 +33,14 @@ struct SendOptions {
   EncoderOptions encoder;
   double rate_hz = 10.0;
   int deadline_ms = 250;
+  std::optional<int> wait_s;  ///< none: 10, but not where it loops
   bool loop = false;
   bool json = false;
 };
 
-/// A sensor: where its sweeps come from, and how they are encoded.
-struct Feed {
-  std::string sensor;
-  std::unique_ptr<SweepSource> source;
-  std::optional<Encoder> encoder;   ///< of what is sent
-  std::optional<Encoder> recorder;  ///< of what is kept, at full quality
-  SourceSweep sweep;
-  std::uint64_t sequence = 0;
-  std::size_t least_bytes = 0;  ///< what sweeps took lately at their coarsest
-};
-
-/// Level of "fixed:L"; none for "budget".
-std::optional<int> fixed_level(const std::string& strategy) {
-  if (strategy == "budget") return std::nullopt;
-  return strategy.back() - '0';
-}
-
 std::string check_strategy(const std::string& text) {
-  const bool is_fixed =
-      text.size() == 7 && text.rfind("fixed:", 0) == 0 && text.back() >= '0' && text.back() <= '5';
-  return text == "budget" || is_fixed ? "" : "\"" + text + "\" is not budget or fixed:0..5";
+  const auto strategy = make_strategy(text, CodecId::beam);
+  return strategy ? "" : strategy.error().message;
 }
 
 Result<std::pair<std::string, std::uint16_t>> parse_address(const std::string& text) {
@@ -75,26 +58,11 @@ Result<std::pair<std::string, std::uint16_t>> parse_address(const std::string& t
 Result<std::vector<Feed>> open_feeds(const SendOptions& options) {
   std::vector<Feed> feeds;
   for (std::size_t i = 0; i < options.inputs.size(); ++i) {
-    Feed& feed = feeds.emplace_back();
-    feed.sensor = i < options.sensors.size() ? options.sensors[i] : "lidar";
-    auto source = open_source(options.inputs[i]);
-    if (!source) return tl::unexpected(source.error());
-    feed.source = std::move(*source);
-    if (!feed.source->gives_clouds()) continue;
-    EncoderOptions live = options.encoder;
-    if (const auto level = fixed_level(options.strategy)) {
-      live.beam.level = level;
-      live.rcpcc.params = kRcpccLevels.at(static_cast<std::size_t>(*level));
-    } else {
-      live.beam.target_bytes = LinkBudget{}.sweep_bytes;
-    }
-    auto encoder = Encoder::create(live);
-    if (!encoder) return tl::unexpected(encoder.error());
-    feed.encoder = std::move(*encoder);
-    if (options.record.empty()) continue;
-    auto recorder = Encoder::create({});
-    if (!recorder) return tl::unexpected(recorder.error());
-    feed.recorder = std::move(*recorder);
+    const std::string sensor = i < options.sensors.size() ? options.sensors[i] : "lidar";
+    auto feed = Feed::open({options.inputs[i], sensor, options.encoder, options.strategy,
+                            options.rate_hz, options.loop});
+    if (!feed) return tl::unexpected(feed.error());
+    feeds.push_back(std::move(*feed));
   }
   return feeds;
 }
@@ -107,10 +75,11 @@ class Sending {
   Status run();
 
  private:
-  [[nodiscard]] Result<bool> read(Feed& feed);
-  [[nodiscard]] Result<std::span<const std::byte>> encode(Feed& feed, std::size_t bytes);
+  [[nodiscard]] Status wait_for_connection();
+  [[nodiscard]] Status never_connected() const;
   [[nodiscard]] Status keep(Feed& feed);
-  [[nodiscard]] Status send(Feed& feed, steady_clock::time_point captured);
+  [[nodiscard]] Status send(Feed& feed, const LinkBudget& budget,
+                            steady_clock::time_point captured);
   [[nodiscard]] Status send_all();
   [[nodiscard]] std::vector<Metric> metrics() const;
   [[nodiscard]] std::string line() const;
@@ -122,64 +91,41 @@ class Sending {
   std::optional<SweepWriter> record_;
 };
 
-Result<bool> Sending::read(Feed& feed) {
-  auto there = feed.source->next(feed.sweep);
-  if (there && !*there && options_.loop && !stop_requested() && feed.source->rewind()) {
-    there = feed.source->next(feed.sweep);
+/// What has an end loses nothing to the time in which the connection is made.
+Status Sending::wait_for_connection() {
+  constexpr std::chrono::milliseconds kCheck{20};
+  constexpr int kWait_s = 10;
+  const auto end = steady_clock::now() + std::chrono::seconds(options_.wait_s.value_or(kWait_s));
+  StatusLine line;
+  while (!sender_.status().connected && !wait_for_stop(steady_clock::now() + kCheck)) {
+    if (steady_clock::now() < end) {
+      line.update([&] { return this->line(); });
+    } else {  // what is recorded is recorded all the same
+      return options_.record.empty() ? never_connected() : Status{};
+    }
   }
-  return there;
+  return {};
 }
 
-/// Encodes the sweep; one that does not fit its budget even at its coarsest is allowed more, of
-/// which the link then takes the layers that it can carry.
-Result<std::span<const std::byte>> Sending::encode(Feed& feed, std::size_t bytes) {
-  const auto stamp = static_cast<double>(feed.sequence) * 1e9 / options_.rate_hz;
-  const SweepInfo info{feed.sequence, static_cast<std::int64_t>(stamp), feed.sensor};
-  if (fixed_level(options_.strategy)) return feed.encoder->encode(feed.sweep.cloud, info);
-  for (std::size_t target = std::max({bytes, feed.least_bytes, std::size_t{1}});; target *= 2) {
-    if (Status set = feed.encoder->set_target_bytes(target); !set) {
-      return tl::unexpected(set.error());
-    }
-    auto frame = feed.encoder->encode(feed.sweep.cloud, info);
-    if (frame || frame.error().code != ErrorCode::limit || target > (std::size_t{1} << 24)) {
-      feed.least_bytes = target > bytes ? target - target / 10 : 0;
-      return frame;
-    }
-  }
+Status Sending::never_connected() const {
+  const std::string error = sender_.status().error;
+  return fail(ErrorCode::not_found, options_.to + ": was never connected, so nothing was sent: " +
+                                        (error.empty() ? "nobody answers there" : error));
 }
 
 /// Adds the sweep to the recording.
 Status Sending::keep(Feed& feed) {
   if (!record_) return {};
-  std::span<const std::byte> frame = feed.sweep.frame;
-  if (feed.recorder) {
-    const auto stamp = static_cast<double>(feed.sequence) * 1e9 / options_.rate_hz;
-    auto encoded = feed.recorder->encode(
-        feed.sweep.cloud, {feed.sequence, static_cast<std::int64_t>(stamp), feed.sensor});
-    if (!encoded) return tl::unexpected(encoded.error());
-    frame = *encoded;
-  }
-  return record_->append(frame, feed.sweep.name);
+  const auto frame = feed.full();
+  if (!frame) return tl::unexpected(frame.error());
+  return record_->append(*frame, feed.name());
 }
 
-Status Sending::send(Feed& feed, steady_clock::time_point captured) {
-  const std::size_t bytes = sender_.budget().sweep_bytes / feeds_.size();
-  OutgoingSweep out;
-  out.sensor = feed.sensor;
-  out.name = std::string_view(feed.sweep.name).substr(0, 64);
-  out.captured = captured;
-  out.frame = feed.sweep.frame;
-  out.most_bytes = bytes;
-  if (feed.encoder) {
-    const auto frame = encode(feed, bytes);
-    if (!frame) {
-      return fail(frame.error().code, feed.sweep.name + ": " + frame.error().message);
-    }
-    out.frame = *frame;
-    out.most_bytes = std::max(bytes, feed.least_bytes);
-    if (fixed_level(options_.strategy)) out.most_bytes = 0;
-  }
-  return sender_.send(out);
+Status Sending::send(Feed& feed, const LinkBudget& budget, steady_clock::time_point captured) {
+  auto sweep = feed.make(budget);
+  if (!sweep) return tl::unexpected(sweep.error());
+  sweep->captured = captured;
+  return sender_.send(*sweep);
 }
 
 Status Sending::send_all() {
@@ -190,14 +136,15 @@ Status Sending::send_all() {
   for (auto due = steady_clock::now();; due = std::max(due + interval, steady_clock::now())) {
     if (wait_for_stop(due)) return {};
     bool any = false;
+    LinkBudget budget = sender_.choose();
+    budget.sweep_bytes /= feeds_.size();
     for (Feed& feed : feeds_) {
-      const auto there = read(feed);
+      const auto there = feed.next();
       if (!there) return tl::unexpected(there.error());
       if (!*there) continue;
       any = true;
-      if (Status sent = send(feed, due); !sent) return sent;
+      if (Status sent = send(feed, budget, due); !sent) return sent;
       if (Status kept = keep(feed); !kept) return kept;
-      ++feed.sequence;
     }
     if (!any) return {};
     line.update([&] { return this->line(); });
@@ -217,7 +164,9 @@ Status Sending::run() {
     if (!started) return tl::unexpected(started.error());
     server = std::move(*started);
   }
-  Status status = send_all();
+  Status status;
+  if (!options_.loop || options_.wait_s) status = wait_for_connection();
+  if (status) status = send_all();
   sender_.finish();
   server.reset();
   if (record_) {
@@ -226,8 +175,7 @@ Status Sending::run() {
   report();
   const SenderStatus s = sender_.status();
   if (!status || s.connections > 0 || s.sweeps == 0 || stop_requested()) return status;
-  return fail(ErrorCode::not_found, options_.to + ": was never connected, so nothing was sent: " +
-                                        (s.error.empty() ? "nobody answers there" : s.error));
+  return never_connected();
 }
 
 std::vector<Metric> Sending::metrics() const {
@@ -256,7 +204,7 @@ std::vector<Metric> Sending::metrics() const {
 
 std::string Sending::line() const {
   const SenderStatus s = sender_.status();
-  if (!s.connected) return "not connected: " + s.error;
+  if (!s.connected) return options_.to + ": not connected: " + s.error;
   return fmt::format(
       "{} sweeps, {} dropped, {:.1f} KB a sweep, {:.0f} KB/s arrive, queue {:.1f} KB and {:.0f} ms",
       s.sweeps, s.sweeps_dropped, static_cast<double>(s.budget.sweep_bytes) / 1e3,
@@ -283,6 +231,7 @@ void Sending::report() const {
 }
 
 Status send(const SendOptions& options) {
+  stop_on_signals();  // before anything is written
   const auto address = parse_address(options.to);
   if (!address) return tl::unexpected(address.error());
   const auto keys = read_link_keys(options.key_file);
@@ -297,10 +246,11 @@ Status send(const SendOptions& options) {
   std::tie(sender_options.host, sender_options.port) = *address;
   sender_options.key = keys->front();
   sender_options.deadline = std::chrono::milliseconds(options.deadline_ms);
-  sender_options.choose_budget = measured_capacity_budget(1.0 / options.rate_hz);
+  sender_options.strategy = options.strategy;
+  sender_options.codec = options.encoder.codec;
+  sender_options.rate_hz = options.rate_hz;
   auto sender = Sender::start(std::move(sender_options));
   if (!sender) return tl::unexpected(sender.error());
-  stop_on_signals();
   return Sending(options, std::move(*feeds), std::move(*sender)).run();
 }
 
@@ -329,18 +279,23 @@ void add_send(CLI::App& app, Command& command) {
       ->type_name("HZ");
   sub->add_flag("--loop", options->loop, "Begin again at the end, until a signal comes");
   sub->add_option("--strategy", options->strategy,
-                  "budget: as many bytes as the link carries; fixed:L: one level [budget]")
+                  "budget: as many bytes as the link carries; paper, bola, mpc: a level for each "
+                  "sweep; fixed:L: one for all [budget]")
       ->check(CLI::Validator(check_strategy, ""))
       ->type_name("NAME");
   sub->add_option("--deadline", options->deadline_ms, "What is older is dropped, ms [250]")
       ->check(CLI::Range(10, 10'000).description(""))
       ->type_name("MS");
+  sub->add_option("--wait", options->wait_s,
+                  "How long to wait for a receiver before the first sweep, s [10; with --loop 0]")
+      ->check(CLI::Range(0, 86'400).description(""))
+      ->type_name("S");
   sub->add_option_function<std::string>(
          "--codec",
          [options](const std::string& name) {
            options->encoder.codec = name == "rcpcc" ? CodecId::rcpcc : CodecId::beam;
          },
-         "Codec of clouds; rcpcc needs --strategy fixed:L [beam]")
+         "Codec of clouds [beam]")
       ->check(CLI::IsMember({"beam", "rcpcc"}).description(""))
       ->type_name("beam|rcpcc");
   sub->add_option_function<std::string>(
@@ -359,11 +314,6 @@ void add_send(CLI::App& app, Command& command) {
   sub->add_flag("--json", options->json, "Print the outcome as JSON");
   sub->footer("Example: sweepcast send drive/sweeps --to 192.168.1.5:5600 --key rover.key --loop");
   sub->callback([options, &command] {
-    const bool is_fixed = options->strategy != "budget";
-    if (options->encoder.codec == CodecId::rcpcc && !is_fixed) {
-      throw CLI::ValidationError("--codec",
-                                 "rcpcc cannot be given a budget; add --strategy fixed:L");
-    }
     if (options->inputs.size() > 1 && options->sensors.size() != options->inputs.size()) {
       throw CLI::ValidationError("--sensor", "several inputs need a name each");
     }

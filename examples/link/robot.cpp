@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
       cloud.y.push_back(9 * std::sin(azimuth));
       cloud.z.push_back(z);
     }
-    (void)encoder->set_target_bytes(sender->budget().sweep_bytes);
+    (void)encoder->set_target_bytes(sender->choose().sweep_bytes);
     const auto frame = encoder->encode(cloud, {static_cast<std::uint64_t>(n), 0, "roof"});
     if (frame) (void)sender->send({*frame, "roof", "", next});
   }

@@ -8,11 +8,13 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "sweepcast/frame.hpp"
 #include "sweepcast/status.hpp"
 
 namespace sweepcast {
@@ -43,34 +45,29 @@ struct LinkKey {
 
 /// What a sender knows of its link when it has to choose how many bytes to spend.
 struct LinkState {
-  double time_s = 0;             ///< of a clock that never jumps
-  double receive_rate = 0;       ///< bytes a second that arrived, since the report before
-  double queue_delay_s = 0;      ///< one-way delay above the least of the last 10 to 20 s
-  double round_trip_s = 0;       ///< of the newest report's echo
-  double report_age_s = 0;       ///< since the newest report
-  std::size_t queued_bytes = 0;  ///< not yet handed to the transport
+  double time_s = 0;              ///< of a clock that never jumps
+  double receive_rate = 0;        ///< bytes a second that arrived, since the report before
+  double queue_delay_s = 0;       ///< one-way delay above the least of the last 10 to 20 s
+  double round_trip_s = 0;        ///< of the newest report's echo
+  double least_round_trip_s = 0;  ///< of the last 2 s
+  double report_age_s = 0;        ///< since the newest report
+  std::size_t queued_bytes = 0;   ///< not yet handed to the transport
 };
 
-/// What may be spent.
+/// What the sweeps of one interval may cost, all sensors together.
 struct LinkBudget {
-  double bytes_per_second = 100e3;  ///< the pace at which packets leave, everything counted
-  std::size_t sweep_bytes = 8000;   ///< of the sweeps of one interval, all sensors together
+  std::optional<std::size_t> level;  ///< of the codec's ladder, where the strategy chose one; else
+  std::size_t sweep_bytes = 8000;    ///< so many bytes; 0: as many as there are
 };
-
-/// Chooses the budget; called after each report (one in 50 ms), and while reports stay out. Runs in
-/// the sender's thread.
-using BudgetChoice = std::function<LinkBudget(const LinkState&)>;
-
-/// The choice that is built in: delay tells when the link is full, what arrived then its capacity.
-/// `interval_s`: seconds from sweep to sweep.
-[[nodiscard]] BudgetChoice measured_capacity_budget(double interval_s);
 
 struct SenderOptions {
   std::string host = "127.0.0.1";
   std::uint16_t port = 0;
   LinkKey key;
   std::chrono::milliseconds deadline{250};  ///< of a sweep, from its capture; 10 ms to 10 s
-  BudgetChoice choose_budget;               ///< none: `measured_capacity_budget(0.1)`
+  std::string strategy = "budget";  ///< or another of docs/rate.md: paper, bola, mpc, fixed:L
+  CodecId codec = CodecId::beam;    ///< of the frames: "budget" is another one with each
+  double rate_hz = 10.0;            ///< sweeps a second of each sensor, 0.1 to 1000
 };
 
 /// A frame to send.
@@ -81,6 +78,7 @@ struct OutgoingSweep {
   std::chrono::steady_clock::time_point captured;  ///< when its last point was measured
   /// Layers that end beyond so many bytes are left out, but for the first; 0: none are.
   std::size_t most_bytes = 0;
+  std::optional<std::size_t> level{};  ///< that it was encoded at, where it is one of the ladder's
 };
 
 /// Counters since the start, and how things are now.
@@ -98,6 +96,7 @@ struct SenderStatus {
   std::uint64_t reports = 0;
   LinkState link;
   LinkBudget budget;
+  double bytes_per_second = 0;  ///< the pace at which packets leave, everything counted
   std::string error;  ///< why the last connection ended or failed; empty while all is well
 };
 
@@ -106,7 +105,7 @@ struct SenderStatus {
 class Sender {
  public:
   /// Begins to connect; needs no receiver to be there. Errors: invalid_argument (a name, a host
-  /// that cannot be resolved, a deadline out of bounds), unsupported.
+  /// that cannot be resolved, a deadline or rate out of bounds, no such strategy), unsupported.
   [[nodiscard]] static Result<Sender> start(SenderOptions options);
 
   Sender(Sender&&) noexcept;
@@ -120,8 +119,8 @@ class Sender {
   /// of more than 4 MiB).
   [[nodiscard]] Status send(const OutgoingSweep& sweep);
 
-  /// What the next sweeps may take.
-  [[nodiscard]] LinkBudget budget() const;
+  /// Asks the strategy what the next sweeps may take: once an interval, before they are encoded.
+  [[nodiscard]] LinkBudget choose();
   [[nodiscard]] SenderStatus status() const;
 
   /// Waits until everything has left and arrived, or was dropped at its deadline.

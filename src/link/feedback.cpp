@@ -1,6 +1,7 @@
 #include "link/feedback.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/bytes.hpp"
 
@@ -16,6 +17,8 @@ void write_report(const Report& report, std::vector<std::byte>& plain) {
   out.put(report.least_delay_us);
   out.put(report.fragments);
   out.put(report.bytes);
+  out.put(report.busy_us);
+  out.put(report.busy_bytes);
   out.put(static_cast<std::uint8_t>(report.streams.size()));
   for (const StreamReport& stream : report.streams) {
     out.put(stream.stream);
@@ -35,6 +38,8 @@ std::optional<Report> read_report(std::span<const std::byte> plain) {
   report.least_delay_us = in.get<std::uint32_t>();
   report.fragments = in.get<std::uint32_t>();
   report.bytes = in.get<std::uint64_t>();
+  report.busy_us = in.get<std::uint32_t>();
+  report.busy_bytes = in.get<std::uint32_t>();
   const auto streams = in.get<std::uint8_t>();
   if (!in.ok() || streams > kMostStreams) return std::nullopt;
   for (std::uint8_t i = 0; i < streams; ++i) {
@@ -55,6 +60,8 @@ bool LinkObserver::add(const Report& report, Microseconds now) {
   if (last_ && report.number <= last_->number) return false;
   if (!last_ && report.fragments == 0) return true;  // nothing to measure yet
   if (last_) {
+    sample_.bytes += report.busy_bytes - last_->busy_bytes;
+    sample_.busy_s += static_cast<double>(report.busy_us - last_->busy_us) * 1e-6;
     const std::int32_t elapsed = wrapped_difference(report.now_us, last_->now_us);
     if (elapsed > 0 && report.bytes >= last_->bytes) {
       state_.receive_rate =
@@ -78,10 +85,18 @@ bool LinkObserver::add(const Report& report, Microseconds now) {
     const std::int32_t round = wrapped_difference(sent, report.echo_us);
     state_.round_trip_s =
         std::max(0.0, (static_cast<double>(round) - static_cast<double>(report.held_us)) * 1e-6);
+    trips_s_[number_of_trips_++ % trips_s_.size()] = state_.round_trip_s;
+    const auto end =
+        trips_s_.begin() + static_cast<std::ptrdiff_t>(std::min(number_of_trips_, trips_s_.size()));
+    state_.least_round_trip_s = *std::min_element(trips_s_.begin(), end);
   }
   last_ = report;
   last_at_ = now;
   return true;
+}
+
+LinkSample LinkObserver::take_sample() {
+  return std::exchange(sample_, {});
 }
 
 LinkState LinkObserver::state(Microseconds now) const {

@@ -1,9 +1,9 @@
 // Reports: what a receiver tells a sender every 50 ms. docs/format-link.md has the bytes.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <span>
 #include <utility>
@@ -34,12 +34,20 @@ struct Report {
       0;                        ///< receiver's less sender's clock, least since the last report
   std::uint32_t fragments = 0;  ///< since the last report
   std::uint64_t bytes = 0;      ///< of packets, since the connection began
+  std::uint32_t busy_us = 0;    ///< see `ArrivalMeter`
+  std::uint32_t busy_bytes = 0;
   std::vector<StreamReport> streams;
 };
 
 void write_report(const Report& report, std::vector<std::byte>& plain);
 /// None where a number or the size is out of bounds.
 [[nodiscard]] std::optional<Report> read_report(std::span<const std::byte> plain);
+
+/// What the link carried, since it was last asked.
+struct LinkSample {
+  std::size_t bytes = 0;
+  double busy_s = 0.0;
+};
 
 /// Turns the reports of a connection into what a strategy sees.
 class LinkObserver {
@@ -48,14 +56,18 @@ class LinkObserver {
   bool add(const Report& report, Microseconds now);
   /// As of `now`; `queued_bytes` is left to the caller.
   [[nodiscard]] LinkState state(Microseconds now) const;
+  [[nodiscard]] LinkSample take_sample();
 
  private:
   LinkState state_;
+  LinkSample sample_;
   Microseconds last_at_ = 0;
   std::optional<Report> last_;
   /// Least delays of spans of 10 s, relative to the first report's: now and before.
   std::int64_t least_now_ = 0, least_before_ = 0;
   Microseconds span_began_ = 0;
+  std::array<double, 40> trips_s_{};  ///< round trips of the last 2 s
+  std::size_t number_of_trips_ = 0;
   std::uint32_t reference_us_ = 0;
 };
 

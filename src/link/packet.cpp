@@ -106,6 +106,7 @@ PacketFault PacketOpener::open(std::span<const std::byte> packet,
           kPacketHeadBytes, nonce_of(counter).data(), key_.data()) != 0) {
     return PacketFault::forged;
   }
+  counter_ = counter;
   window_.mark(counter);  // only now: a forged packet must not shut out a true one
   plain = plain_;
   return PacketFault::none;

@@ -69,11 +69,14 @@ class PacketOpener {
   /// `plain` is valid until the next call; empty where there is a fault.
   [[nodiscard]] PacketFault open(std::span<const std::byte> packet,
                                  std::span<const std::byte>& plain);
+  /// Of the packet that was opened last.
+  [[nodiscard]] std::uint64_t counter() const { return counter_; }
 
  private:
   LinkSecret key_;
   PacketType type_;
   ReplayWindow window_;
+  std::uint64_t counter_ = 0;
   std::vector<std::byte> plain_;
 };
 

@@ -50,6 +50,7 @@ void Peer::take_fragment(const Fragment& fragment, std::size_t packet_bytes, Mic
   ++counts_.packets;
   counts_.bytes += packet_bytes;
   report_.bytes += packet_bytes;
+  meter_.add(opener_->counter(), fragment.sent_us, packet_bytes, now);
   const auto delay = static_cast<std::uint32_t>(now) - fragment.sent_us;
   if (report_.fragments == 0 || wrapped_difference(delay, report_.least_delay_us) < 0) {
     report_.least_delay_us = delay;
@@ -135,6 +136,8 @@ std::span<const std::byte> Peer::report(Microseconds now) {
   if (!sealer_ || now - reported_ < kReportInterval) return {};
   reported_ = now;
   ++report_.number;
+  report_.busy_us = meter_.busy_us();
+  report_.busy_bytes = meter_.busy_bytes();
   report_.now_us = static_cast<std::uint32_t>(now);
   report_.held_us = static_cast<std::uint32_t>(now - newest_at_);
   report_.streams.clear();

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "link/arrival_meter.hpp"
 #include "link/feedback.hpp"
 #include "link/packet.hpp"
 #include "link/reassembly.hpp"
@@ -77,6 +78,7 @@ class Peer {
   std::vector<ArrivedSweep> arrived_;
   PeerCounts counts_;
   Report report_;
+  ArrivalMeter meter_;
   Microseconds reported_ = 0;
   Microseconds newest_at_ = 0;  ///< when the newest fragment arrived
   std::vector<std::byte> plain_;

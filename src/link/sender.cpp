@@ -9,8 +9,9 @@
 #include "codec/frame_edit.hpp"
 #include "core/crc32.hpp"
 #include "link/feedback.hpp"
+#include "link/outbox.hpp"
 #include "link/packet.hpp"
-#include "link/send_queue.hpp"
+#include "link/rate_control.hpp"
 #include "link/srt_socket.hpp"
 #include "sweepcast/link.hpp"
 
@@ -23,12 +24,12 @@ using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
 constexpr Microseconds kReportTimeout = 1'500'000;  // then the receiver counts as gone
-constexpr Microseconds kBurst = 5'000;              // what pacing may catch up with
+constexpr Microseconds kBurst = 12'000;             // what pacing may catch up with
 constexpr std::size_t kWireHead = 44;               // SRT, UDP and IPv4 heads of a packet
-constexpr double kUnderWay_s = 0.15;   // of packets at the budget's pace, and a round trip
-constexpr double kLeastUnderWay = 16;  // packets
+constexpr double kUnderWay_s = 0.15;  // of packets at the link's rate, and a round trip
+constexpr double kLeastUnderWay = 8;  // packets
 constexpr int kReceiveTimeout_ms = 50;
-constexpr microseconds kShortestSleep{4'000};  // several packets a wake-up: waking costs more
+constexpr microseconds kShortestSleep{10'000};  // several packets a wake-up: waking costs more
 constexpr milliseconds kRetry{100};
 constexpr milliseconds kBufferFull{2};
 constexpr milliseconds kExpiryCheck{20};
@@ -50,7 +51,10 @@ struct Session {
 }  // namespace
 
 struct Sender::State {
-  explicit State(SenderOptions sender_options) : options(std::move(sender_options)) {}
+  State(SenderOptions sender_options, std::unique_ptr<Strategy> strategy)
+      : options(std::move(sender_options)),
+        control(std::move(strategy), options.codec, 1.0 / options.rate_hz),
+        outbox(control.order()) {}
 
   SrtLibrary library;
   SenderOptions options;
@@ -59,7 +63,8 @@ struct Sender::State {
   mutable std::mutex mutex;  // guards all that follows
   std::condition_variable wake;
   bool stop = false;
-  SendQueue queue;
+  RateControl control;
+  Outbox outbox;
   std::vector<Stream> streams;
   std::optional<Session> session;
   LinkObserver observer;
@@ -76,7 +81,7 @@ struct Sender::State {
                                    std::span<const std::byte> packet,
                                    std::optional<PacketOpener>& opener);
   void take_report(PacketOpener& opener, std::span<const std::byte> packet, Microseconds now);
-  void update_budget(Microseconds now);
+  [[nodiscard]] LinkBudget choose(Microseconds now);
   [[nodiscard]] Microseconds send_next(Microseconds now, Microseconds due);
   [[nodiscard]] Result<std::uint8_t> stream_of(std::string_view sensor);
   [[nodiscard]] Status prepare_frame(Stream& stream, std::span<const std::byte>& frame,
@@ -136,11 +141,10 @@ std::string Sender::State::converse(const SrtSocket& socket) {
       if (status.reports != reports) heard = now;
     }
     if (now - heard > kReportTimeout) error = "the receiver is silent";
-    update_budget(now);
   }
   const std::scoped_lock lock(mutex);
   session.reset();
-  queue.clear();
+  outbox.clear();
   status.connected = false;
   retransmitted_before = status.packets_retransmitted;
   return error;
@@ -158,6 +162,7 @@ bool Sender::State::begin_session(SRTSOCKET socket, const Challenge& ours,
   opener.emplace(keys.to_sender, PacketType::feedback);
   session.emplace(Session{socket, PacketSealer(keys.to_receiver)});
   observer = {};
+  control.begin(now_us());
   for (Stream& stream : streams) stream.confirmed = 0;
   status.connected = true;
   status.error.clear();
@@ -177,6 +182,7 @@ void Sender::State::take_report(PacketOpener& opener, std::span<const std::byte>
   }
   ++status.reports;
   if (!observer.add(*report, now)) return;
+  control.add(observer.take_sample());
   for (const StreamReport& stream : report->streams) {
     if (stream.stream < streams.size()) streams[stream.stream].confirmed = stream.model;
   }
@@ -187,11 +193,18 @@ void Sender::State::take_report(PacketOpener& opener, std::span<const std::byte>
   }
 }
 
-void Sender::State::update_budget(Microseconds now) {
-  if (!session) return;
-  status.link = observer.state(now);
-  status.link.queued_bytes = queue.queued_bytes();
-  status.budget = options.choose_budget(status.link);
+LinkBudget Sender::State::choose(Microseconds now) {
+  RateControl::Situation situation;
+  situation.queued_frames = outbox.queue().frames();
+  situation.queued_bytes = outbox.queue().bytes();
+  situation.connected = session.has_value();
+  situation.sensors = std::max<std::size_t>(1, streams.size());
+  if (session) {
+    situation.bytes_under_way = packets_under_way(session->socket) * kMostPacketBytes;
+  }
+  const Choice choice = control.decide(observer.state(now), situation);
+  status.budget = {choice.level, choice.level ? 0 : choice.bytes};
+  return status.budget;
 }
 
 /// Sends packets one by one, at the budget's pace.
@@ -199,15 +212,15 @@ void Sender::State::run_pacer() {
   std::unique_lock lock(mutex);
   Microseconds due = now_us();
   while (!stop) {
-    if (queue.empty()) {
-      wake.wait(lock, [&] { return stop || !queue.empty(); });
+    if (outbox.queue().frames() == 0) {
+      wake.wait(lock, [&] { return stop || outbox.queue().frames() > 0; });
       continue;
     }
     const Microseconds now = now_us();
     if (now < due) {
       wake.wait_for(lock, std::max(microseconds(due - now), kShortestSleep));
     } else if (!session) {
-      (void)queue.peek(now);  // what waits ends at its deadline all the same
+      (void)outbox.peek(now);  // what waits ends at its deadline all the same
       wake.wait_for(lock, kExpiryCheck);
     } else {
       due = send_next(now, due);
@@ -217,13 +230,13 @@ void Sender::State::run_pacer() {
 
 /// Sends the next fragment, if there still is one. Returns when another one may follow.
 Microseconds Sender::State::send_next(Microseconds now, Microseconds due) {
-  const auto fragment = queue.peek(now);
+  const auto fragment = outbox.peek(now);
   if (!fragment) return due;
   // What is under way cannot be taken back: as little as fills the link, so that after an outage
   // fresh sweeps need not wait for stale packets.
-  const double rate = std::max(1e3, status.budget.bytes_per_second);
-  const double fills = rate * (kUnderWay_s + std::min(status.link.round_trip_s, kUnderWay_s)) /
-                       static_cast<double>(kMostPacketBytes);
+  const double trip = std::min(observer.state(now).least_round_trip_s, kUnderWay_s);
+  const double fills =
+      control.rate() * (kUnderWay_s + trip) / static_cast<double>(kMostPacketBytes);
   const auto under_way = static_cast<double>(packets_under_way(session->socket));
   if (under_way > std::max(kLeastUnderWay, fills)) {
     return now + microseconds(kBufferFull).count();
@@ -232,10 +245,10 @@ Microseconds Sender::State::send_next(Microseconds now, Microseconds due) {
   const auto packet = session->sealer.seal(PacketType::fragment, plain);
   const SrtOutcome outcome = srt_send_packet(session->socket, packet);
   if (outcome != SrtOutcome::done) return now + microseconds(kBufferFull).count();
-  queue.pop();
+  outbox.pop();
   ++status.packets;
   status.bytes += packet.size();
-  const double time = static_cast<double>(packet.size() + kWireHead) * 1e6 / rate;
+  const double time = static_cast<double>(packet.size() + kWireHead) * 1e6 / control.pace();
   return std::max(due, now - kBurst) + static_cast<Microseconds>(time);
 }
 
@@ -297,13 +310,18 @@ Result<Sender> Sender::start(SenderOptions options) {
   if (options.deadline < milliseconds(10) || options.deadline > milliseconds(10'000)) {
     return fail(ErrorCode::invalid_argument, "the deadline must lie between 10 ms and 10 s");
   }
+  constexpr double kMostRate = 1000.0;
+  if (!(options.rate_hz >= 0.1 && options.rate_hz <= kMostRate)) {
+    return fail(ErrorCode::invalid_argument,
+                "the rate must lie between 0.1 and 1000 sweeps a second");
+  }
+  auto strategy = make_strategy(options.strategy, options.codec);
+  if (!strategy) return tl::unexpected(strategy.error());
   if (Status crypto = prepare_crypto(); !crypto) return tl::unexpected(crypto.error());
   auto address = resolve(options.host, options.port);
   if (!address) return tl::unexpected(address.error());
-  if (!options.choose_budget) options.choose_budget = measured_capacity_budget(0.1);
-  auto state = std::make_unique<State>(std::move(options));
+  auto state = std::make_unique<State>(std::move(options), std::move(*strategy));
   state->address = *address;
-  state->status.budget = state->options.choose_budget({});
   if (auto probe = make_srt_socket(); !probe) return tl::unexpected(probe.error());
   state->pacer = std::thread([s = state.get()] { s->run_pacer(); });
   state->connector = std::thread([s = state.get()] { s->run_connector(); });
@@ -334,24 +352,28 @@ Status Sender::send(const OutgoingSweep& sweep) {
   if (!layers) return tl::unexpected(layers.error());
   ++state.status.sweeps;
   const Microseconds deadline = captured + microseconds(state.options.deadline).count();
-  state.queue.push(*number, std::move(*layers), deadline);
+  if (sweep.level) state.control.learn(*sweep.level, sweep.frame.size());
+  state.outbox.push(*number, std::move(*layers), deadline, now_us());
   state.wake.notify_all();
   return {};
 }
 
-LinkBudget Sender::budget() const {
+LinkBudget Sender::choose() {
   const std::scoped_lock lock(state_->mutex);
-  return state_->status.budget;
+  return state_->choose(now_us());
 }
 
 SenderStatus Sender::status() const {
   const std::scoped_lock lock(state_->mutex);
   SenderStatus status = state_->status;
-  const SendCounts& counts = state_->queue.counts();
+  const SendQueue& queue = state_->outbox.queue();
+  const SendCounts& counts = queue.counts();
   status.sweeps_sent = counts.sent;
   status.sweeps_cut = counts.cut;
   status.sweeps_dropped = counts.dropped;
-  status.link.queued_bytes = state_->queue.queued_bytes();
+  if (state_->session) status.link = state_->observer.state(now_us());
+  status.link.queued_bytes = queue.bytes();
+  status.bytes_per_second = state_->control.pace();
   return status;
 }
 
@@ -361,7 +383,7 @@ void Sender::finish() {
   std::unique_lock lock(state_->mutex);
   while (steady_clock::now() < end) {
     const bool has_arrived = !state_->session || packets_under_way(state_->session->socket) == 0;
-    if (state_->queue.empty() && has_arrived) return;
+    if (state_->outbox.queue().frames() == 0 && has_arrived) return;
     state_->wake.wait_for(lock, kCheck);
   }
 }

@@ -45,6 +45,20 @@ enum class SendOrder : std::uint8_t {
   freshest_first,  ///< see `SendQueue`
 };
 
+/// The level with the largest value, of equal ones the finest; `value` maps 0 to levels - 1.
+template <class Value>
+[[nodiscard]] std::size_t best_level(std::size_t levels, const Value& value) {
+  std::size_t best = 0;
+  auto most = value(best);
+  for (std::size_t level = 1; level < levels; ++level) {
+    const auto worth = value(level);
+    if (worth <= most) continue;
+    best = level;
+    most = worth;
+  }
+  return best;
+}
+
 /// A strategy is called once for each sweep, in order.
 class Strategy {
  public:

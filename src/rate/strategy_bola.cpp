@@ -25,17 +25,11 @@ class Bola final : public Strategy {
     };
     // The paper's choice of V: with one frame of room less than all, the finest level.
     const double v = (kRoom - 1.0) / (utility(0) + kGammaP);
-    std::size_t best = kLevels - 1;
-    double best_score = 0.0;
-    for (std::size_t level = 0; level < view.level_bytes.size(); ++level) {
-      const double score =
-          (v * (utility(level) + kGammaP) - buffer) / static_cast<double>(view.level_bytes[level]);
-      if (level == 0 || score > best_score) {
-        best = level;
-        best_score = score;
-      }
-    }
-    return {.level = best};
+    const auto score = [&](std::size_t level) {
+      return (v * (utility(level) + kGammaP) - buffer) /
+             static_cast<double>(view.level_bytes[level]);
+    };
+    return {.level = best_level(view.level_bytes.size(), score)};
   }
 };
 

@@ -2,8 +2,8 @@
 // adaptive video streaming over HTTP", SIGCOMM 2015; with equation 5 as what is made large.
 #include <algorithm>
 #include <cmath>
-#include <deque>
 
+#include "rate/recent.hpp"
 #include "rate/strategy.hpp"
 
 namespace sweepcast {
@@ -26,15 +26,9 @@ class Mpc final : public Strategy {
     view_ = &view;
     sweep_bytes_ = predict() * view.period_s;
     const auto backlog = static_cast<double>(view.queued_bytes);
-    double best = 0.0;
-    std::size_t choice = kLevels - 1;
-    for (std::size_t level = 0; level < view.level_bytes.size(); ++level) {
-      const double value = plan(level, backlog, last_quality_, kHorizon);
-      if (level == 0 || value > best) {
-        best = value;
-        choice = level;
-      }
-    }
+    const std::size_t choice = best_level(view.level_bytes.size(), [&](std::size_t level) {
+      return plan(level, backlog, last_quality_, kHorizon);
+    });
     last_quality_ = level_quality(choice);
     return {.level = choice};
   }
@@ -43,25 +37,13 @@ class Mpc final : public Strategy {
   void measure(const LinkView& view) {
     if (view.busy_s < kLeastBusy) return;
     const double rate = std::max(kLeastRate, static_cast<double>(view.sent_bytes) / view.busy_s);
-    if (!rates_.empty()) {
-      errors_.push_back(std::abs(harmonic_mean() - rate) / rate);
-      if (errors_.size() > kRates) errors_.pop_front();
-    }
-    rates_.push_back(rate);
-    if (rates_.size() > kRates) rates_.pop_front();
-  }
-
-  double harmonic_mean() const {
-    double sum = 0.0;
-    for (const double rate : rates_) sum += 1.0 / rate;
-    return static_cast<double>(rates_.size()) / sum;
+    if (!rates_.empty()) errors_.add(std::abs(rates_.harmonic_mean() - rate) / rate);
+    rates_.add(rate);
   }
 
   /// The harmonic mean of the last rates, lessened by the largest of the last errors.
   double predict() const {
-    if (rates_.empty()) return kLeastRate;
-    const double error = errors_.empty() ? 0.0 : *std::max_element(errors_.begin(), errors_.end());
-    return harmonic_mean() / (1.0 + error);
+    return rates_.empty() ? kLeastRate : rates_.harmonic_mean() / (1.0 + errors_.largest());
   }
 
   /// The most that a step at this level and `depth - 1` more are worth.
@@ -82,8 +64,8 @@ class Mpc final : public Strategy {
     return value + best;
   }
 
-  std::deque<double> rates_;   ///< bytes a second, newest last
-  std::deque<double> errors_;  ///< of earlier predictions, relative
+  Recent rates_{kRates};   ///< bytes a second
+  Recent errors_{kRates};  ///< of earlier predictions, relative
   double last_quality_ = level_quality(0);
   const LinkView* view_ = nullptr;  ///< during `decide`
   double sweep_bytes_ = 0.0;        ///< that the link is predicted to take a sweep

@@ -2,9 +2,8 @@
 // here is ours, named, and explained in docs/rate.md.
 #include <algorithm>
 #include <array>
-#include <deque>
-#include <numeric>
 
+#include "rate/recent.hpp"
 #include "rate/strategy.hpp"
 
 namespace sweepcast {
@@ -37,7 +36,7 @@ class Paper final : public Strategy {
     if (--settling_ <= 0) {
       if (trying_ && view.queued_frames > queue_before_ + kGrowth) {
         roll_back();
-      } else if (mean_queue() > kLongQueue && level_ + 1 < kLevels) {
+      } else if (history_.mean() > kLongQueue && level_ + 1 < kLevels) {
         switch_to(level_ + 1);
         trying_ = false;
       } else if (level_ > 0 && stable_ >= patience_[level_ - 1]) {
@@ -50,14 +49,8 @@ class Paper final : public Strategy {
 
  private:
   void remember(std::size_t queue) {
-    history_.push_back(static_cast<double>(queue));
-    if (history_.size() > kMemory) history_.pop_front();
+    history_.add(static_cast<double>(queue));
     stable_ = queue <= kStableQueue ? stable_ + 1 : 0;
-  }
-
-  double mean_queue() const {
-    return std::accumulate(history_.begin(), history_.end(), 0.0) /
-           static_cast<double>(history_.size());
   }
 
   void switch_to(std::size_t level) {
@@ -85,11 +78,11 @@ class Paper final : public Strategy {
   }
 
   std::size_t level_ = 0;
-  std::deque<double> history_;  ///< queue lengths, newest last
-  int stable_ = 0;              ///< sweeps for which the queue has been stable
-  int settling_ = 0;            ///< sweeps until the next switch is allowed
-  bool trying_ = false;         ///< an attempt goes on
-  int trial_ = 0;               ///< sweeps until it has succeeded
+  Recent history_{kMemory};  ///< queue lengths
+  int stable_ = 0;           ///< sweeps for which the queue has been stable
+  int settling_ = 0;         ///< sweeps until the next switch is allowed
+  bool trying_ = false;      ///< an attempt goes on
+  int trial_ = 0;            ///< sweeps until it has succeeded
   std::size_t queue_before_ = 0;
   std::array<int, kLevels> patience_{};  ///< before an attempt at each level
 };

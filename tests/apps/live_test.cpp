@@ -72,6 +72,88 @@ TEST_F(LiveTool, ASenderEndsCleanlyWithoutAReceiver) {
   EXPECT_EQ(run("decode kept.sweep -o kept").exit_status, 0);
 }
 
+TEST_F(LiveTool, WhatHasAnEndWaitsForTheReceiver) {
+  // The port of a receiver that is not there yet: it was, a moment ago.
+  const Outcome outcome = shell(
+      receiving("first") +
+      "kill -TERM $R; wait $R; \"$SWEEPCAST\" send sweeps --to 127.0.0.1:$PORT --key k --rate 20 "
+      "--deadline 10000 --wait 60 --strategy fixed:1 --json >sent & S=$!; "
+      "\"$SWEEPCAST\" receive --listen $PORT --keys k -o got 2>/dev/null & R=$!; "
+      "wait $S; echo $?; kill -TERM $R; wait $R; echo $?");
+  EXPECT_EQ(outcome.out, "0\n0\n") << outcome.err;
+  EXPECT_NE(read("sent").find("\"sent\": 3"), std::string::npos) << read("sent");
+  EXPECT_EQ(run("info got/rover/lidar.sweep --json").json()["frames"].size(), 3U);
+  expect_failure(run("send sweeps --to 127.0.0.1:9 --key k --wait 0"), 1,
+                 {"127.0.0.1:9", "never connected"});
+}
+
+TEST_F(LiveTool, LevelsAreChosenForClouds) {
+  const Outcome outcome = shell(
+      receiving("got") +
+      "for s in paper mpc; do \"$SWEEPCAST\" send sweeps --to 127.0.0.1:$PORT --key k "
+      "--deadline 10000 --sensor $s --strategy $s >/dev/null; done; \"$SWEEPCAST\" send sweeps "
+      "--to 127.0.0.1:$PORT --key k --deadline 10000 --sensor plan --codec rcpcc >/dev/null; "
+      "kill -TERM $R; wait $R; echo $?");
+  EXPECT_EQ(outcome.out, "0\n") << outcome.err;
+  for (const char* sensor : {"paper", "mpc", "plan"}) {
+    const std::string file = std::string("got/rover/") + sensor + ".sweep";
+    EXPECT_EQ(run("info " + file + " --json").json()["frames"].size(), 3U) << sensor;
+    EXPECT_EQ(run("decode " + file + " -o " + sensor).exit_status, 0);
+  }
+  expect_failure(run("send room.sweep --to 127.0.0.1:9 --key k --strategy mpc"), 1,
+                 {"room.sweep", "budget"});
+}
+
+TEST_F(LiveTool, SignalsThatWereIgnoredOrComeTwiceStillCloseRecordings) {
+  // What a shell starts in the background ignores SIGINT; timeout sends SIGTERM twice.
+  const Outcome outcome = shell(
+      "(trap '' INT; exec \"$SWEEPCAST\" receive --listen 0 --keys k -o got.sweep 2>note) & "
+      "R=$!; until grep -q listening note; do kill -0 $R || exit 9; done; "
+      "PORT=$(sed -n 's/.*listening at .*:\\([0-9]*\\)$/\\1/p' note); "
+      "(trap '' INT; exec \"$SWEEPCAST\" send sweeps --to 127.0.0.1:$PORT --key k --loop "
+      "--record kept.sweep >/dev/null) & S=$!; "
+      "until [ -s kept.sweep ] && [ -s got.sweep ]; do kill -0 $S || exit 9; done; "
+      "kill -INT $S; wait $S; echo $?; kill -INT $R; wait $R; echo $?; "
+      "timeout 2 \"$SWEEPCAST\" send sweeps --to 127.0.0.1:9 --key k --loop --record "
+      "timed.sweep >/dev/null; echo $?");
+  EXPECT_EQ(outcome.out, "0\n0\n124\n") << outcome.err;
+  for (const char* file : {"kept.sweep", "got.sweep", "timed.sweep"}) {
+    const auto info = run(std::string("info ") + file + " --json").json();
+    EXPECT_EQ(info["index_rebuilt"], false) << file;
+    EXPECT_GE(info["frames"].size(), 1U) << file;
+  }
+}
+
+TEST_F(LiveTool, AFullDiskLosesSweepsAndNothingElse) {
+  // Recordings may have 8 KiB here: a few sweeps. Receiving goes on, and the sender sees nothing.
+  const Outcome outcome = shell(
+      "ulimit -f 8; " + receiving("got", "--json >report") +
+      "\"$SWEEPCAST\" send sweeps --to 127.0.0.1:$PORT --key k --loop --rate 50 --strategy fixed:0 "
+      "--json >sent & S=$!; until grep -q 'receiving goes on' note; do kill -0 $R || exit 9; done; "
+      "kill -TERM $S; wait $S; echo $?; kill -TERM $R; wait $R; echo $?");
+  EXPECT_EQ(outcome.out, "0\n1\n") << outcome.err << read("note");
+  EXPECT_NE(read("note").find("could not be written; those that were are whole"), std::string::npos)
+      << read("note");
+  const Outcome decoded = run("decode got/rover/lidar.sweep -o clouds");
+  EXPECT_GE(list("clouds").size(), 1U) << decoded.err;
+}
+
+TEST_F(LiveTool, AStuckReaderDoesNotHoldUpTheNetwork) {
+  // Nobody reads from the pipe: writing stands still, receiving does not.
+  const Outcome outcome = shell(
+      "mkfifo pipe; sleep 600 <pipe & P=$!; \"$SWEEPCAST\" receive --listen 0 --keys k -o - --json "
+      "2>note >pipe & R=$!; until grep -q listening note; do kill -0 $R || exit 9; done; "
+      "PORT=$(sed -n 's/.*listening at .*:\\([0-9]*\\)$/\\1/p' note); "
+      "head -c 60000 /dev/zero >pipe; for i in 1 2 3 4; do \"$SWEEPCAST\" send sweeps --to "
+      "127.0.0.1:$PORT --key k --rate 50 "
+      "--deadline 10000 --strategy fixed:0 --json; done; kill -KILL $R; kill $P");
+  std::size_t whole = 0;
+  for (std::size_t at = 0; (at = outcome.out.find("\"sent\": 3", at)) != std::string::npos; ++at) {
+    ++whole;
+  }
+  EXPECT_EQ(whole, 4U) << outcome.out << outcome.err;
+}
+
 TEST_F(LiveTool, MistakesAreNamed) {
   expect_failure(run("keygen k --robot rover"), 1, {"k: ", "exists already"});
   expect_failure(run("keygen x --robot ../up"), 1, {"robot's name"});

@@ -8,6 +8,7 @@
 #include <optional>
 #include <thread>
 
+#include "link/relay.hpp"
 #include "link/support.hpp"
 #include "sweepcast/decoder.hpp"
 #include "sweepcast/link.hpp"
@@ -77,8 +78,8 @@ class Live : public ::testing::Test {
     SenderOptions options;
     options.port = port;
     options.key = key;
-    options.deadline = 5000ms;  // nothing is dropped on a slow machine
-    options.choose_budget = [](const LinkState&) { return LinkBudget{10e6, 100'000}; };
+    options.deadline = 5000ms;     // nothing is dropped on a slow machine
+    options.strategy = "fixed:0";  // and all are sent
     auto started = Sender::start(options);
     EXPECT_TRUE(started) << started.error().message;
     return std::move(*started);
@@ -201,11 +202,65 @@ TEST_F(Live, FinishWaitsUntilAllHasArrived) {
   EXPECT_EQ(mailbox_.wait_for(1).size(), 1U);
 }
 
+/// The budgets that a sender chooses while it sends frames, as large as each says, through a relay
+/// of a given rate, until `enough` of the choices so far. Frames are cut to their budget by layers.
+class Choices : public Live {
+ protected:
+  std::vector<std::size_t> choose(
+      double bytes_per_s, const std::function<bool(const std::vector<std::size_t>&)>& enough) {
+    Receiver server = receiver(0, {rover_});
+    RelayOptions between;
+    between.to_port = server.port();
+    between.trace = steady_trace(bytes_per_s);
+    between.link.delay_us = 5'000;
+    auto relay = Relay::start(between);
+    EXPECT_TRUE(relay);
+    SenderOptions options;
+    options.port = relay->port();
+    options.key = rover_;
+    auto robot = Sender::start(options);
+    EXPECT_TRUE(robot);
+    EXPECT_TRUE(eventually([&] { return robot->status().connected; }));
+    const Bytes frame = large_frame();
+    std::vector<std::size_t> choices;
+    const auto end = steady_clock::now() + 60s;
+    for (auto due = steady_clock::now(); !enough(choices) && due < end; due += 100ms) {
+      std::this_thread::sleep_until(due);  // a sensor's own time
+      const LinkBudget budget = robot->choose();
+      EXPECT_FALSE(budget.level);
+      choices.push_back(budget.sweep_bytes);
+      EXPECT_TRUE(robot->send({frame, "roof", "", due, budget.sweep_bytes}));
+    }
+    EXPECT_TRUE(enough(choices)) << choices.size() << " choices, the last " << choices.back();
+    return choices;
+  }
+};
+
+TEST_F(Choices, BudgetGrowsToItsMostOnAFastLinkByNoMoreThanAFifthASweep) {
+  const auto choices =
+      choose(20e6, [](const auto& all) { return !all.empty() && all.back() == 45'000; });
+  for (std::size_t i = 1; i < choices.size(); ++i) {
+    EXPECT_LE(static_cast<double>(choices[i]), 1.2 * static_cast<double>(choices[i - 1]) + 1.0);
+  }
+}
+
+TEST_F(Choices, BudgetStaysSmallOnASlowLink) {
+  const auto choices = choose(60e3, [](const auto& all) { return all.size() == 50; });
+  // 0.8 of 6 kB, two thirds of it for the time that is left; with room for a busy machine.
+  for (std::size_t i = 20; i < choices.size(); ++i) EXPECT_LE(choices[i], 7'000U) << i;
+}
+
 TEST_F(Live, OptionsAreChecked) {
   SenderOptions sender_options;
   EXPECT_FALSE(Sender::start(sender_options));  // no key
   sender_options.key = rover_;
   sender_options.deadline = 1ms;
+  EXPECT_FALSE(Sender::start(sender_options));
+  sender_options.deadline = 100ms;
+  sender_options.strategy = "best";
+  EXPECT_FALSE(Sender::start(sender_options));
+  sender_options.strategy = "paper";
+  sender_options.rate_hz = 0.0;
   EXPECT_FALSE(Sender::start(sender_options));
   EXPECT_FALSE(Receiver::start({}));
   Receiver server = receiver(0, {rover_});

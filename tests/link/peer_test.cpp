@@ -4,7 +4,7 @@
 #include "codec/damage.hpp"
 #include "codec/frame_edit.hpp"
 #include "core/crc32.hpp"
-#include "link/send_queue.hpp"
+#include "link/outbox.hpp"
 #include "link/support.hpp"
 #include "sweepcast/decoder.hpp"
 
@@ -24,14 +24,14 @@ class PeerTest : public ::testing::Test {
   /// The packets of a frame as a sender makes them.
   std::vector<Bytes> packets_of(const Bytes& frame, std::uint32_t model, Microseconds now) {
     const auto layers = cut_layers(frame, {static_cast<std::uint32_t>(now), model, "roof", "name"});
-    queue_.push(0, *layers, now + 200'000);
+    outbox_.push(0, *layers, now + 200'000, now);
     std::vector<Bytes> packets;
-    while (const auto fragment = queue_.peek(now)) {
+    while (const auto fragment = outbox_.peek(now)) {
       Bytes plain;
       write_fragment(*fragment, plain);
       const auto packet = sealer_->seal(PacketType::fragment, plain);
       packets.emplace_back(packet.begin(), packet.end());
-      queue_.pop();
+      outbox_.pop();
     }
     return packets;
   }
@@ -43,7 +43,7 @@ class PeerTest : public ::testing::Test {
   MemoryBudget memory_{std::size_t{1} << 22, 0};
   Peer peer_{key_, std::size_t{1} << 22, memory_, 0};
   std::optional<PacketSealer> sealer_;
-  SendQueue queue_;
+  Outbox outbox_{SendOrder::freshest_first};
 };
 
 TEST_F(PeerTest, FramesArriveWithTheirModel) {

@@ -12,6 +12,7 @@
 #include "codec/beam/sensor.hpp"
 #include "link/fragment.hpp"
 #include "link/key.hpp"
+#include "link/trace.hpp"
 #include "sweepcast/encoder.hpp"
 
 namespace sweepcast::test {
@@ -44,6 +45,26 @@ inline std::vector<Bytes> small_frames(int count, int model_interval = 10) {
     frames.emplace_back(frame->begin(), frame->end());
   }
   return frames;
+}
+
+/// A frame of about 60 kB in five layers.
+inline Bytes large_frame() {
+  auto encoder = Encoder::create(beam_options(0.002, 1));
+  const PointCloud cloud = spinning_sweep(64, 720, 3);
+  const auto frame = encoder->encode(cloud, {0, 5, "roof"});
+  return {frame->begin(), frame->end()};
+}
+
+/// A trace of one rate, bytes a second.
+inline Trace steady_trace(double bytes_per_s) {
+  Trace trace;
+  trace.name = "steady";
+  const double apart_us = 1500.0 / bytes_per_s * 1e6;
+  for (double at = apart_us; at <= 1e6; at += apart_us) {
+    trace.opportunities_us.push_back(static_cast<std::int64_t>(at));
+  }
+  trace.period_us = 1'000'000;
+  return trace;
 }
 
 /// All fragments of one layer, in order; payloads refer to `layer`.

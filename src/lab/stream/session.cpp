@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -12,6 +13,16 @@ namespace {
 
 /// How long the sender goes on after the last sweep.
 constexpr std::int64_t kDrainUs = 60'000'000;
+/// What is overtaken waits for spare time, so many layers of it, so long.
+constexpr std::size_t kLateLayers = 3;
+constexpr std::int64_t kLateUs = 60'000'000;
+
+/// Bytes of a frame that travel together.
+struct Piece {
+  std::uint64_t frame = 0;
+  std::size_t begin = 0;  ///< from the frame's start
+  std::size_t bytes = 0;
+};
 
 /// The setting that a choice means: a level, or the largest budget, or else level, that fits.
 std::size_t setting_of(const FrameSet& frames, std::span<const std::size_t> level_bytes,
@@ -36,7 +47,7 @@ class Session {
         strategy_(strategy),
         level_bytes_(frames.level_bytes()),
         link_(trace, without_queue(options.link)),
-        queue_(strategy.order()) {}
+        queue_(strategy.order(), kLateLayers) {}
 
   std::vector<SweepFate> run() {
     const double period_us = 1e6 / options_.rate_hz;
@@ -87,7 +98,12 @@ class Session {
     arrivals_.emplace_back();
     const auto limit = static_cast<std::size_t>(options_.link.queue_limit);
     fate.skipped = choice.skip || (limit > 0 && fate.queued_bytes + ends.back() > limit);
-    if (!fate.skipped) queue_.push(index, std::move(ends), now_us);
+    if (!fate.skipped) {
+      const bool is_late_over = strategy_.order() == SendOrder::freshest_first;
+      const std::int64_t deadline_us =
+          is_late_over ? now_us + kLateUs + 1 : std::numeric_limits<std::int64_t>::max();
+      queue_.push({index, 0, std::move(ends), deadline_us}, now_us);
+    }
     fates_.push_back(fate);
   }
 
@@ -113,7 +129,13 @@ class Session {
 
   /// What is lost goes first, once it is known to be.
   std::optional<Piece> next_piece() {
-    if (lost_.empty() || lost_.begin()->first > now_us_) return queue_.next(now_us_, kPacketBytes);
+    if (lost_.empty() || lost_.begin()->first > now_us_) {
+      const auto next = queue_.next(now_us_);
+      if (!next) return std::nullopt;
+      const std::size_t bytes = std::min(kPacketBytes, next->end - next->begin);
+      queue_.take(bytes);
+      return Piece{next->frame, next->begin, bytes};
+    }
     const Piece piece = lost_.begin()->second;
     lost_.erase(lost_.begin());
     return piece;
