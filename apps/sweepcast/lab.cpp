@@ -1,5 +1,5 @@
-// simulate, simulate-link, bench, ablate, odometry: `sweepcast-lab` has them, with the heavy libraries that
-// they need.
+// simulate, simulate-link, bench, ablate, odometry: `sweepcast-lab` has them, with the heavy
+// libraries that they need.
 #include <fmt/core.h>
 #include <unistd.h>
 
