@@ -28,7 +28,7 @@ RigidTransform Odometry::add(const PointCloud& cloud, std::span<const float> whe
   RegistrationOptions registration;
   registration.max_distance_m = 3.0 * threshold_m_;
   registration.kernel = threshold_m_ / 3.0;  // as in its released code, in m^2
-  const RigidTransform pose = register_points(keys, map_, last * motion, registration);
+  RigidTransform pose = register_points(keys, map_, last * motion, registration);
 
   learn_threshold((last * motion).inverse() * pose);
   for (Eigen::Vector3d& point : to_map) point = pose * point;
