@@ -112,7 +112,8 @@ TEST_F(LiveTool, SignalsThatWereIgnoredOrComeTwiceStillCloseRecordings) {
       "PORT=$(sed -n 's/.*listening at .*:\\([0-9]*\\)$/\\1/p' note); "
       "(trap '' INT; exec \"$SWEEPCAST\" send sweeps --to 127.0.0.1:$PORT --key k --loop "
       "--record kept.sweep >/dev/null) & S=$!; "
-      "until [ -s kept.sweep ] && [ -s got.sweep ]; do kill -0 $S || exit 9; done; "
+      "until [ $(wc -c <kept.sweep) -gt 200 ] && [ $(wc -c <got.sweep) -gt 200 ]; "  // a frame
+      "do kill -0 $S || exit 9; done; "
       "kill -INT $S; wait $S; echo $?; kill -INT $R; wait $R; echo $?; "
       "timeout 2 \"$SWEEPCAST\" send sweeps --to 127.0.0.1:9 --key k --loop --record "
       "timed.sweep >/dev/null; echo $?");
