@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <string>
 #include <utility>
 
@@ -38,10 +38,11 @@ constexpr std::int32_t kMissedSteps = 8;
 // off by half of it: too dear for the bytes.
 constexpr double kWidestCrowd = 0.1;
 
-// With as few digits as tell the number.
+// For messages, without idle zeros. Emscripten's library has no to_chars of numbers like these.
 std::string in_digits(double number) {
   std::array<char, 32> text{};
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
+  (void)std::snprintf(text.data(), text.size(), "%.9g", number);
+  return text.data();
 }
 
 BeamQuality quality_of(const BeamOptions& options) {
