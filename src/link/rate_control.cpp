@@ -6,9 +6,6 @@
 namespace sweepcast::link {
 namespace {
 
-/// What the strategies' own estimate begins with and remembers, see `rate/strategy_budget.cpp`.
-constexpr double kMemory = 0.25;
-constexpr double kFirstRate = 100e3;
 constexpr double kPace = 1.5;
 /// Packets are then near enough to each other for a train, see `ArrivalMeter`.
 constexpr double kLeastPace = 120e3;
@@ -25,7 +22,7 @@ constexpr std::array<std::size_t, kLevels> kRcpccBytes{21'000, 17'000, 15'000, 7
 RateControl::RateControl(std::unique_ptr<Strategy> strategy, CodecId codec, double period_s)
     : strategy_(std::move(strategy)),
       period_s_(period_s),
-      rate_(kMemory, kFirstRate),
+      rate_(kRateMemory, kFirstRate),
       level_bytes_(codec == CodecId::beam ? kBeamBytes : kRcpccBytes) {}
 
 void RateControl::begin(Microseconds now) {

@@ -6,6 +6,11 @@
 
 namespace sweepcast {
 
+/// Of `budget`, and of whoever paces what it sends: busy seconds in which the estimate forgets, and
+/// bytes a second before anything is known.
+inline constexpr double kRateMemory = 0.25;
+inline constexpr double kFirstRate = 100e3;
+
 /// A mean of the rate in which the latest counts most: its memory fades over the time that the link
 /// was busy, so that an idle link forgets nothing.
 class RateEstimate {

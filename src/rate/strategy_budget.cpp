@@ -10,8 +10,6 @@ namespace {
 /// Share of the estimated capacity that a sweep may take; the rest makes up for swings, and sends
 /// what was overtaken.
 constexpr double kShare = 0.8;
-/// Seconds in which the estimate of the rate forgets, of those in which the link was busy.
-constexpr double kMemory = 0.25;
 /// Sweeps are wanted so long after their last firing, seconds; by then a sweep must have been sent
 /// and have passed the link, and swings may take the last third of what is left for sending.
 constexpr double kDeadline = 0.15;
@@ -23,8 +21,6 @@ constexpr double kGrowth = 1.2;
 /// upper one gains nothing.
 constexpr double kLeast = 3600.0;
 constexpr double kMost = 45'000.0;
-/// Before anything is known, bytes a second.
-constexpr double kFirstRate = 100e3;
 
 class Budget final : public Strategy {
  public:
@@ -40,7 +36,7 @@ class Budget final : public Strategy {
   SendOrder order() const override { return SendOrder::freshest_first; }
 
  private:
-  RateEstimate rate_{kMemory, kFirstRate};
+  RateEstimate rate_{kRateMemory, kFirstRate};
   double budget_ = kLeast;
 };
 

@@ -13,7 +13,7 @@ namespace {
 /// Seconds in which the estimate of the rate forgets.
 constexpr double kMemory = 0.5;
 /// Before anything is known, and at least, bytes a second.
-constexpr double kFirstRate = 300e3;
+constexpr double kFirstLevelRate = 300e3;
 constexpr double kLeastRate = 1e3;
 /// A plan is good for rates that differ from its own by no more than this share.
 constexpr double kSameRate = 0.02;
@@ -32,7 +32,7 @@ class PlannedLevels final : public Strategy {
   }
 
  private:
-  RateEstimate rate_{kMemory, kFirstRate};
+  RateEstimate rate_{kMemory, kFirstLevelRate};
   std::optional<LadderPlan> plan_;
   double planned_rate_ = 0.0;  ///< that `plan_` is for
   std::size_t level_ = 0;

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "lab/drives.hpp"
-#include "lab/simulate/random.hpp"
+#include "lab/random.hpp"
 
 namespace sweepcast::lab {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "lab/drives.hpp"
-#include "lab/simulate/random.hpp"
+#include "lab/random.hpp"
 #include "lab/simulate/road.hpp"
 
 namespace sweepcast::lab {

@@ -180,34 +180,41 @@ TEST(ScatteredHolds, ThereAreNoneWhereNoFiringIsHeld) {
   EXPECT_EQ(lags, before);
 }
 
-TEST(ScatteredHolds, OfARealSweepAreATwelfthOfAll) {
-  const auto paths = lab::nebula_sweeps({"vlp32.pcd"});
-  if (paths.empty()) GTEST_SKIP() << "needs SWEEPCAST_DATA";
-  PointCloud cloud;
-  ASSERT_TRUE(read_cloud(paths.front(), cloud));
-  const CloudView view(cloud);
-  const auto estimate = estimate_sensor_model(std::span(&view, 1));
-  ASSERT_TRUE(estimate) << estimate.error().message;
-  EXPECT_LE(estimate->model.jitter, 4);  // 20 to a model that does not know of held firings
+/// A real sweep, and the model that is estimated from it.
+class HeldFiringsOfARealSweep : public ::testing::Test {
+ protected:
+  void read(const char* name) {
+    const auto paths = lab::nebula_sweeps({name});
+    if (paths.empty()) GTEST_SKIP() << "needs SWEEPCAST_DATA";
+    ASSERT_TRUE(read_cloud(paths.front(), cloud_));
+    const CloudView view(cloud_);
+    const auto estimate = estimate_sensor_model(std::span(&view, 1));
+    ASSERT_TRUE(estimate) << estimate.error().message;
+    model_ = estimate->model;
+  }
+
+  PointCloud cloud_;
+  SensorModel model_;
+};
+
+TEST_F(HeldFiringsOfARealSweep, AreATwelfthOfAllWhereTheyAreScattered) {
+  ASSERT_NO_FATAL_FAILURE(read("vlp32.pcd"));
+  if (IsSkipped()) return;
+  EXPECT_LE(model_.jitter, 4);  // 20 to a model that does not know of held firings
   BeamImage image;
   BeamGridOptions options;
   options.max_error_m = 0.01;
-  BeamProjector(estimate->model).project(cloud, options, image);
+  BeamProjector(model_).project(cloud_, options, image);
   EXPECT_LT(image.cols, 1'000);  // of 907 firings
   EXPECT_LT(image.extras.size(), 100U);
   EXPECT_NEAR(static_cast<double>(std::count(image.held.begin(), image.held.end(), 1)), 76.0, 4.0);
 }
 
-TEST(HeldFirings, OfARealSweepAreAThirdOfAll) {
-  const auto paths = lab::nebula_sweeps({"vls128.pcd"});
-  if (paths.empty()) GTEST_SKIP() << "needs SWEEPCAST_DATA";
-  PointCloud cloud;
-  ASSERT_TRUE(read_cloud(paths.front(), cloud));
-  const CloudView view(cloud);
-  const auto estimate = estimate_sensor_model(std::span(&view, 1));
-  ASSERT_TRUE(estimate) << estimate.error().message;
+TEST_F(HeldFiringsOfARealSweep, AreAThirdOfAll) {
+  ASSERT_NO_FATAL_FAILURE(read("vls128.pcd"));
+  if (IsSkipped()) return;
   BeamImage image;
-  BeamProjector(estimate->model).project(cloud, {}, image);
+  BeamProjector(model_).project(cloud_, {}, image);
   EXPECT_TRUE(image.extras.empty());
   EXPECT_LT(image.cols, 2'000);  // 4,385 to a model that does not know of held firings
   EXPECT_NEAR(static_cast<double>(std::count(image.held.begin(), image.held.end(), 1)), 601.0,

@@ -33,22 +33,20 @@ void Encoder::write_grid(PartList& parts) {
   const BeamImage& image = imager_.image();
   ByteWriter out = parts.begin(static_cast<std::uint8_t>(Part::grid));
   out.put_varint(as_unsigned(image.cols));
-  if (image.cols > 0) {
-    out.put(imager_.model_id());
-    out.put(coding_of(plan_));
-    out.put(static_cast<std::uint8_t>(plan_.lattice.front().row_stride));
-    out.put(static_cast<std::uint8_t>(plan_.lattice.front().col_stride));
-    for (const LayerQuality& quality : plan_.quality) {
-      out.put_varint(as_unsigned(quality.step));
-      out.put_signed(quality.tolerance);
-    }
-    const bool residuals = !image.azimuth_residual.empty();
-    out.put_varint(residuals ? as_unsigned(image.azimuth_divisor) : 0U);
-    out.put_varint(as_unsigned(image.height_step));
-    out.put(static_cast<std::uint8_t>(image.motion ? 1 : 0));
-    if (image.motion) write_motion(*image.motion, out);
-  }
   if (image.cols == 0) return;
+  out.put(imager_.model_id());
+  out.put(coding_of(plan_));
+  out.put(static_cast<std::uint8_t>(plan_.lattice.front().row_stride));
+  out.put(static_cast<std::uint8_t>(plan_.lattice.front().col_stride));
+  for (const LayerQuality& quality : plan_.quality) {
+    out.put_varint(as_unsigned(quality.step));
+    out.put_signed(quality.tolerance);
+  }
+  const bool residuals = !image.azimuth_residual.empty();
+  out.put_varint(residuals ? as_unsigned(image.azimuth_divisor) : 0U);
+  out.put_varint(as_unsigned(image.height_step));
+  out.put(static_cast<std::uint8_t>(image.motion ? 1 : 0));
+  if (image.motion) write_motion(*image.motion, out);
   parts.begin(static_cast<std::uint8_t>(Part::firings));
   firing_coder_.write(image.firing_tick, parts.bytes(), image.held);
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lab/random.hpp"
+
 namespace sweepcast::lab {
 
 namespace {
@@ -13,17 +15,10 @@ Voxel voxel_of(const Eigen::Vector3d& point, double size_m) {
   return (point / size_m).array().floor().cast<int>();
 }
 
-// SplitMix64's finaliser (Steele et al., Fast splittable pseudorandom number generators, 2014).
-std::uint64_t mix(std::uint64_t bits) {
-  bits = (bits ^ (bits >> 30U)) * 0xbf58476d1ce4e5b9ULL;
-  bits = (bits ^ (bits >> 27U)) * 0x94d049bb133111ebULL;
-  return bits ^ (bits >> 31U);
-}
-
 // A place in a cube, the same for the same cube and seed.
 Eigen::Vector3d place_in(const Voxel& voxel, double size_m, std::uint64_t seed) {
   constexpr double kSteps = 1U << 21U;
-  const std::uint64_t bits = mix(seed ^ mix(VoxelHash{}(voxel)));
+  const std::uint64_t bits = scatter(seed ^ scatter(VoxelHash{}(voxel)));
   const Eigen::Vector3d share(static_cast<double>(bits & 0x1fffffU),
                               static_cast<double>((bits >> 21U) & 0x1fffffU),
                               static_cast<double>((bits >> 42U) & 0x1fffffU));

@@ -5,8 +5,8 @@
 
 #include <string_view>
 
+#include "lab/random.hpp"
 #include "lab/simulate/mesh.hpp"
-#include "lab/simulate/random.hpp"
 #include "lab/simulate/road.hpp"
 
 namespace sweepcast::lab {

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "lab/random.hpp"
 #include "lab/simulate/mesh.hpp"
-#include "lab/simulate/random.hpp"
 #include "lab/simulate/ray_scene.hpp"
 #include "lab/simulate/sensors.hpp"
 

@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "lab/random.hpp"
 #include "lab/simulate/geometry.hpp"
-#include "lab/simulate/random.hpp"
 
 namespace sweepcast::lab {
 

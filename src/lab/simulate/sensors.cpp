@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "core/trig.hpp"
-#include "lab/simulate/random.hpp"
+#include "lab/random.hpp"
 
 namespace sweepcast::lab {
 namespace {
