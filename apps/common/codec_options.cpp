@@ -97,8 +97,7 @@ void add_quality(CLI::App& app, EncoderOptions& options) {
                  "Codec beam: as good as fits so many bytes a sweep, the sensor model apart")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 28).description(""))
       ->type_name("N");
-  add_choice<Effort>(app, "--effort", options.beam.effort,
-                     {{"fast", Effort::fast}, {"default", Effort::normal}, {"best", Effort::best}},
+  add_choice<Effort>(app, "--effort", options.beam.effort, effort_words(),
                      "Codec beam: time spent to save bytes, in encoding and decoding [default]");
   add_numbers<4>(app, "--params", "AZIMUTH,ELEVATION,THRESHOLD,QSTEP",
                  "Codec rcpcc: steps in degrees, threshold and quantiser step in metres "
@@ -141,6 +140,12 @@ void add_view(CLI::App& app, RcpccOptions& rcpcc) {
 }
 
 }  // namespace
+
+const std::map<std::string, Effort>& effort_words() {
+  static const std::map<std::string, Effort> words{
+      {"fast", Effort::fast}, {"default", Effort::normal}, {"best", Effort::best}};
+  return words;
+}
 
 void add_codec_options(CLI::App& app, EncoderOptions& options) {
   RcpccOptions& rcpcc = options.rcpcc;

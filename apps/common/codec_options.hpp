@@ -2,10 +2,15 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <map>
+#include <string>
 
 #include "sweepcast/encoder.hpp"
 
 namespace sweepcast::app {
+
+/// The words that --effort takes.
+[[nodiscard]] const std::map<std::string, Effort>& effort_words();
 
 /// Adds --codec, --level, --params and what else tunes the coding. Parsing fills `options`, which
 /// must outlive the program's parsing.

@@ -134,9 +134,7 @@ Status ablate_stages(const AblateCommand& options) {
   if (!sweeps) return tl::unexpected(sweeps.error());
   lab::StageAblationOptions ablation;
   ablation.max_error_m = options.max_error_m;
-  ablation.effort = options.effort == "fast"   ? Effort::fast
-                    : options.effort == "best" ? Effort::best
-                                               : Effort::normal;
+  ablation.effort = effort_words().at(options.effort);
   Progress progress("measuring", sweeps->size());
   ablation.on_sweep = [&progress](std::string_view name) { progress.step(name); };
   const auto rows = lab::ablate_stages(*sweeps, ablation);

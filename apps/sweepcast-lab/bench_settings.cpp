@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <map>
 #include <string_view>
 #include <utility>
 
+#include "common/codec_options.hpp"
 #include "common/validators.hpp"
 #include "lab/peers/draco.hpp"
 #include "lab/peers/sweepcast_codec.hpp"
@@ -95,9 +95,6 @@ Status add_rcpcc(const BenchSettings& options, lab::Peers& peers) {
   return {};
 }
 
-const std::map<std::string, Effort> kEfforts{
-    {"fast", Effort::fast}, {"default", Effort::normal}, {"best", Effort::best}};
-
 /// A setting of beam and its label.
 struct BeamSetting {
   std::string label;
@@ -151,7 +148,7 @@ Status add_beam_peer(const BeamSetting& setting, const std::string& label, bool 
 Status add_beam(const BenchSettings& options, lab::Peers& peers) {
   for (BeamSetting& setting : beam_settings(options)) {
     for (const std::string& effort : options.efforts) {
-      setting.options.effort = kEfforts.at(effort);
+      setting.options.effort = effort_words().at(effort);
       const std::string label = setting.label + (effort == "default" ? "" : " " + effort);
       if (Status added = add_beam_peer(setting, label, false, peers); !added) return added;
       if (!options.fill || !setting.thins) continue;
