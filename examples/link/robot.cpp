@@ -3,6 +3,7 @@
 #include <sweepcast/encoder.hpp>
 #include <sweepcast/link.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -23,8 +24,9 @@ int main(int argc, char** argv) {
   coding.beam.target_bytes = 8000;
   auto encoder = sweepcast::Encoder::create(coding);
   const int sweeps = argc > 4 ? std::atoi(argv[4]) : 100;
-  auto next = std::chrono::steady_clock::now();
-  for (int n = 0; n < sweeps; ++n, next += std::chrono::milliseconds(100)) {
+  using clock = std::chrono::steady_clock;
+  auto next = clock::now();
+  for (int n = 0; n < sweeps; ++n) {
     std::this_thread::sleep_until(next);
     sweepcast::PointCloud cloud;  // your driver's sweep
     for (int i = 0; i < 16 * 900; ++i) {
@@ -36,6 +38,7 @@ int main(int argc, char** argv) {
     (void)encoder->set_target_bytes(sender->choose().sweep_bytes);
     const auto frame = encoder->encode(cloud, {static_cast<std::uint64_t>(n), 0, "roof"});
     if (frame) (void)sender->send({*frame, "roof", "", next});
+    next = std::max(next + std::chrono::milliseconds(100), clock::now());
   }
   sender->finish();
   return sender->status().sweeps_sent > 0 ? 0 : 1;

@@ -7,6 +7,8 @@ namespace sweepcast::link {
 namespace {
 
 constexpr double kPace = 1.5;
+/// SRT acknowledges every 10 ms; seconds.
+constexpr double kAcknowledged = 0.02;
 /// Packets are then near enough to each other for a train, see `ArrivalMeter`.
 constexpr double kLeastPace = 120e3;
 constexpr double kMostPace = 100e6;
@@ -59,6 +61,7 @@ Choice RateControl::decide(const LinkState& link, const Situation& situation) {
   view.delay_s = link.least_round_trip_s / 2.0;
   view.queued_frames = situation.queued_frames;
   view.queued_bytes = situation.queued_bytes + situation.bytes_under_way;
+  view.ahead_bytes = bytes_ahead(link, situation);
   view.sent_bytes = sample_.bytes;
   view.busy_s = sample_.busy_s;
   sample_ = {};
@@ -66,6 +69,13 @@ Choice RateControl::decide(const LinkState& link, const Situation& situation) {
   for (std::size_t& bytes : level_bytes) bytes *= situation.sensors;
   view.level_bytes = level_bytes;
   return strategy_->decide(view);
+}
+
+/// Of what is under way, that which the link does not hold while it keeps up.
+std::size_t RateControl::bytes_ahead(const LinkState& link, const Situation& situation) const {
+  const double held = rate_.bytes_per_s() * (link.least_round_trip_s + kAcknowledged);
+  const double more = static_cast<double>(situation.bytes_under_way) - held;
+  return static_cast<std::size_t>(std::max(0.0, more));
 }
 
 void RateControl::learn(std::size_t level, std::size_t bytes) {

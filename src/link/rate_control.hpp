@@ -49,6 +49,7 @@ class RateControl {
 
  private:
   void count(LinkSample sample);
+  [[nodiscard]] std::size_t bytes_ahead(const LinkState& link, const Situation& situation) const;
 
   std::unique_ptr<Strategy> strategy_;
   double period_s_;

@@ -54,11 +54,8 @@ FragmentFate Reassembler::add(const Fragment& fragment, Microseconds now,
   // The fragment that took the shortest way tells the deadline best.
   const Microseconds deadline = now + Microseconds{fragment.remaining_ms} * 1000;
   sweep.deadline = sweep.deadline == 0 ? deadline : std::min(sweep.deadline, deadline);
-  const bool whole = std::all_of(sweep.layers.begin(), sweep.layers.end(),
-                                 [](const Layer& l) { return !l.has.empty() && l.missing == 0; });
-  if (whole) {
-    end_until(fragment.stream, fragment.sweep, ready);
-  } else if (stream.open.size() > kMostOpen) {
+  if (layer.missing == 0) end_what_is_over(fragment.stream, now, ready);
+  if (stream.open.size() > kMostOpen) {
     end_until(fragment.stream, stream.open.begin()->first, ready);
   }
   return FragmentFate::taken;
@@ -66,12 +63,32 @@ FragmentFate Reassembler::add(const Fragment& fragment, Microseconds now,
 
 void Reassembler::expire(Microseconds now, std::vector<ReadySweep>& ready) {
   for (std::uint8_t number = 0; number < kMostStreams; ++number) {
-    std::uint32_t last = 0;
-    for (const auto& [sweep, state] : streams_[number].open) {
-      if (state.deadline <= now) last = sweep;
-    }
-    if (last != 0) end_until(number, last, ready);
+    end_what_is_over(number, now, ready);
   }
+}
+
+bool Reassembler::Sweep::is_whole() const {
+  return std::all_of(layers.begin(), layers.end(),
+                     [](const Layer& layer) { return layer.is_whole(); });
+}
+
+void Reassembler::end_what_is_over(std::uint8_t number, Microseconds now,
+                                   std::vector<ReadySweep>& ready) {
+  auto& open = streams_[number].open;
+  std::uint32_t last = 0;
+  std::vector<Sweep*> in_repair;  // older than the one at hand, and not over
+  for (auto& [sweep, state] : open) {
+    const bool is_whole = state.is_whole();
+    if (state.deadline <= now || (is_whole && in_repair.empty())) {
+      last = sweep;
+      in_repair.clear();
+    } else if (is_whole) {
+      for (Sweep* older : in_repair) older->deadline = std::min(older->deadline, now + kRepair);
+    } else if (!state.layers.front().is_whole()) {
+      in_repair.push_back(&state);
+    }
+  }
+  if (last != 0) end_until(number, last, ready);
 }
 
 /// Ends a sweep and all older ones of its stream.
@@ -90,7 +107,7 @@ void Reassembler::end_until(std::uint8_t number, std::uint32_t sweep,
       const std::size_t cost = cost_of(layer.bytes.size());
       used_ -= cost;
       shared_.used -= cost;
-      prefix = prefix && layer.missing == 0;
+      prefix = prefix && layer.is_whole();
       if (!prefix) continue;
       ++out.layers;
       out.bytes.insert(out.bytes.end(), layer.bytes.begin(), layer.bytes.end());

@@ -36,9 +36,14 @@ enum class FragmentFate : std::uint8_t {
 };
 
 /// Puts the sweeps of one connection together. A stream's sweeps come out in order: one is over
-/// when it is whole, when its deadline passes, or when a newer one is whole.
+/// when it is whole, when its deadline passes, or when a newer one is whole. One of which a part of
+/// the first layer is missing then may still be repaired: the newer one waits `kRepair` for it.
 class Reassembler {
  public:
+  /// A lost packet takes about a round trip until it is there again. On slow links that is longer
+  /// than from a sweep's end to the next one's, so that without waiting every lost packet of a
+  /// first layer would cost the sweep.
+  static constexpr Microseconds kRepair = 60'000;
   static constexpr std::size_t kMostOpen =
       8;  ///< sweeps of a stream at a time; then the oldest ends
 
@@ -62,10 +67,14 @@ class Reassembler {
     std::vector<std::byte> bytes;
     std::vector<bool> has;  ///< which fragments
     std::size_t missing = 0;
+
+    [[nodiscard]] bool is_whole() const { return !has.empty() && missing == 0; }
   };
   struct Sweep {
     std::vector<Layer> layers;
     Microseconds deadline = 0;
+
+    [[nodiscard]] bool is_whole() const;
   };
   struct Stream {
     std::map<std::uint32_t, Sweep> open;
@@ -73,6 +82,7 @@ class Reassembler {
   };
 
   [[nodiscard]] bool reserve(std::size_t bytes);
+  void end_what_is_over(std::uint8_t number, Microseconds now, std::vector<ReadySweep>& ready);
   void end_until(std::uint8_t number, std::uint32_t sweep, std::vector<ReadySweep>& ready);
 
   std::size_t limit_;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <thread>
 
+#include "link/listening.hpp"
 #include "link/peer.hpp"
 #include "link/srt_socket.hpp"
 #include "sweepcast/link.hpp"
@@ -102,9 +103,11 @@ Status Receiver::State::listen() {
   const SRTSOCKET s = listener.get();
   if (!set_option(s, SRTO_RCVSYN, false) || srt_listen_callback(s, on_connect, this) < 0 ||
       srt_bind(s, address->get(), address->size) < 0 || srt_listen(s, kBacklog) < 0) {
+    int reason = 0;
+    srt_getlasterror(&reason);
     return fail(ErrorCode::io, options.address + ":" + std::to_string(options.port) +
-                                   ": cannot listen there (" + srt_getlasterror_str() +
-                                   "); choose another port, or end the program that has it");
+                                   ": cannot listen there (" + srt_getlasterror_str() + "); " +
+                                   listening_remedy(reason));
   }
   SocketAddress bound;
   bound.size = sizeof(bound.storage);

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "io/file.hpp"
+#include "link/listening.hpp"
 
 namespace sweepcast {
 namespace {
@@ -128,9 +129,10 @@ Status Relay::State::open() {
   socklen_t size = sizeof(bound);
   if (listener.get() < 0 || ::bind(listener.get(), raw(*listen_at), sizeof(*listen_at)) != 0 ||
       ::getsockname(listener.get(), reinterpret_cast<sockaddr*>(&bound), &size) != 0) {
+    const int reason = errno;
     return fail(ErrorCode::io, options.listen_address + ":" + std::to_string(options.listen_port) +
-                                   ": cannot listen there (" + std::strerror(errno) +
-                                   "); choose another port");
+                                   ": cannot listen there (" + std::strerror(reason) + "); " +
+                                   link::listening_remedy(reason));
   }
   port = ntohs(bound.sin_port);
   return {};

@@ -23,6 +23,9 @@ struct LinkView {
   /// Frames encoded before and not fully sent, those given up not among them.
   std::size_t queued_frames = 0;
   std::size_t queued_bytes = 0;  ///< of these, not yet sent
+  /// Sent before and not known to have arrived, more than the link holds as a rule: nothing
+  /// overtakes these.
+  std::size_t ahead_bytes = 0;
   /// Bytes that the link took since the sweep before.
   std::size_t sent_bytes = 0;
   /// Of the time since then, seconds in which there was something to send.

@@ -28,7 +28,8 @@ class Budget final : public Strategy {
     rate_.add(view.sent_bytes, view.busy_s);
     const double sending_s =
         std::min(view.period_s, kSendingShare * std::max(0.0, kDeadline - view.delay_s));
-    const double wanted = kShare * rate_.bytes_per_s() * sending_s;
+    const double wanted =
+        kShare * rate_.bytes_per_s() * sending_s - static_cast<double>(view.ahead_bytes);
     budget_ = std::clamp(std::min(wanted, kGrowth * budget_), kLeast, kMost);
     return {.bytes = static_cast<std::size_t>(budget_)};
   }

@@ -118,6 +118,23 @@ TEST(RateControl, AClockThatJumpsIsForgottenWithinTwoSeconds) {
   }
 }
 
+TEST(RateControl, WhatPilesUpOnTheLinkIsTakenOffTheBudget) {
+  // 200 kB/s hold 6 kB over a round trip of 10 ms and SRT's 20 ms; what is more is ahead of a
+  // sweep.
+  const auto choose = [](std::size_t under_way) {
+    Stream stream;
+    static_cast<void>(stream.run(test::steady_trace(200e3), kNear, 60));
+    LinkState link;
+    link.time_s = 6.0;
+    link.least_round_trip_s = 0.01;
+    const RateControl::Situation situation{.bytes_under_way = under_way, .connected = true};
+    return static_cast<double>(stream.control().decide(link, situation).bytes);
+  };
+  EXPECT_EQ(choose(5'000), choose(0));
+  EXPECT_NEAR(choose(5'000) - choose(11'000), 5'000, 600);
+  EXPECT_EQ(choose(100'000), 3'600);
+}
+
 TEST(RateControl, SilenceIsAnOutageAndIsNotCountedTwice) {
   Stream stream;
   static_cast<void>(stream.run(test::steady_trace(200e3), kNear, 60));

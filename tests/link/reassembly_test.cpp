@@ -103,6 +103,30 @@ TEST_F(Reassembly, ANewerWholeSweepEndsOlderOnesOfItsStream) {
   EXPECT_EQ(ready_[2].stream, 5);
 }
 
+TEST_F(Reassembly, ANewerWholeSweepWaitsForTheRepairOfAFirstLayer) {
+  constexpr Microseconds kRepaired = 1000 + Reassembler::kRepair;
+  const MadeSweep one(1), two(2), three(3), four(4);
+  for (const std::size_t i : {0, 2, 3, 4, 5}) add(one.fragments[i]);
+  for (const Fragment& fragment : two.fragments) add(fragment);
+  EXPECT_TRUE(ready_.empty());
+  add(one.fragments[1], kRepaired - 1);
+  ASSERT_EQ(ready_.size(), 2U);
+  expect_ready(0, 1, 3, one.prefix(3));
+  expect_ready(1, 2, 3, two.prefix(3));
+
+  // One that is not repaired: the newer one waits no longer than that.
+  add(three.fragments[0]);
+  for (const Fragment& fragment : four.fragments) add(fragment);
+  expire(kRepaired - 1);
+  EXPECT_EQ(ready_.size(), 2U);
+  expire(kRepaired);
+  ASSERT_EQ(ready_.size(), 4U);
+  expect_ready(2, 3, 0, {});
+  expect_ready(3, 4, 3, four.prefix(3));
+  EXPECT_EQ(add(three.fragments[1], kRepaired), FragmentFate::late);
+  EXPECT_EQ(memory_.used, 0U);
+}
+
 TEST_F(Reassembly, RepetitionAndContradictionChangeNothing) {
   const MadeSweep sweep(4);
   add(sweep.fragments[0]);

@@ -57,9 +57,10 @@ Result<MetricsServer> MetricsServer::start(const std::string& address,
   try {
     state->exposer = std::make_unique<prometheus::Exposer>(address, kThreads);
     state->exposer->RegisterCollectable(state->figures);
-  } catch (const std::exception& error) {
-    return fail(ErrorCode::io, "metrics at " + address + ": cannot be served (" + error.what() +
-                                   "); choose another port");
+  } catch (const std::exception&) {  // whose text speaks of the library alone
+    return fail(ErrorCode::io, "metrics at " + address +
+                                   ": cannot be served there; give a free port, with an address "
+                                   "of this machine before it where others are to read them");
   }
   return MetricsServer(std::move(state));
 }
