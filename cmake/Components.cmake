@@ -47,6 +47,8 @@ if(SWEEPCAST_APPS OR SWEEPCAST_TESTS)
   sweepcast_component(embree "${embree_FOUND}" libembree-dev "the simulator")
   find_package(draco QUIET)
   sweepcast_component(draco "${draco_FOUND}" libdraco-dev "the comparison with Draco")
+  include(${CMAKE_CURRENT_LIST_DIR}/OpenVdb.cmake)
+  sweepcast_component(openvdb "${openvdb_FOUND}" "libopenvdb-dev libboost-dev" "meshing")
 endif()
 
 if(SWEEPCAST_TESTS)

@@ -10,5 +10,6 @@ void add_simulate_link(CLI::App& app, Command& command);
 void add_bench(CLI::App& app, Command& command);
 void add_ablate(CLI::App& app, Command& command);
 void add_odometry(CLI::App& app, Command& command);
+void add_mesh(CLI::App& app, Command& command);
 
 }  // namespace sweepcast::app

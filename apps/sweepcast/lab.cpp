@@ -1,4 +1,4 @@
-// simulate, simulate-link, bench, ablate, odometry: `sweepcast-lab` has them, with the heavy
+// The lab's commands, from simulate to mesh: `sweepcast-lab` has them, with the heavy
 // libraries that they need.
 #include <fmt/core.h>
 #include <unistd.h>
@@ -23,12 +23,13 @@ struct LabCommand {
   const char* help;
 };
 
-constexpr std::array<LabCommand, 5> kLabCommands{{
+constexpr std::array<LabCommand, 6> kLabCommands{{
     {"simulate", "Drive a simulated sensor through a simulated town"},
     {"simulate-link", "Stream sweeps over a recorded link in virtual time, by each strategy"},
     {"bench", "Measure ratio, distortion and time over settings, beside other codecs"},
     {"ablate", "Measure what each of the method's ideas is worth"},
     {"odometry", "Find where the sensor was, from sweeps alone"},
+    {"mesh", "Make one surface of many sweeps, and compare it"},
 }};
 
 constexpr const char* kProgram = "sweepcast-lab";
