@@ -65,10 +65,9 @@ Status tell_times(const std::filesystem::path& timed, const PointCloud& cloud,
 /// Fuses sweeps into a surface; `timed` are as many, or none.
 Result<Fusion> fuse(const Files& sweeps, const Files& timed,
                     const std::vector<lab::RigidTransform>& poses, const MeshCommand& options) {
-  constexpr double kSeenCube = 0.1;  // metres
   auto volume = lab::TsdfVolume::create(options.volume);
   if (!volume) return tl::unexpected(volume.error());
-  Fusion fusion{{}, lab::SeenSpace(kSeenCube)};
+  Fusion fusion;
   const auto begin = std::chrono::steady_clock::now();
   Progress progress("meshing", sweeps.size());
   PointCloud cloud;

@@ -15,12 +15,13 @@ namespace sweepcast::lab {
 /// Remembers in which cubes of space rays ended: a bit a cube.
 class SeenSpace {
  public:
-  explicit SeenSpace(double cube_m) : cube_m_(cube_m) {}
+  /// Cubes of 5 cm: what lies farther than 18 cm from all ends is not seen.
+  explicit SeenSpace(double cube_m = 0.05) : cube_m_(cube_m) {}
 
   void add(std::span<const Ray> rays);
 
   /// Whether some ray ended in the point's cube or one of its 26 neighbours: true within a cube's
-  /// edge of an end, false beyond 2 sqrt(3) of them.
+  /// edge of an end, false beyond 2 sqrt(3) edges.
   [[nodiscard]] bool is_seen(const Eigen::Vector3d& point) const;
 
  private:

@@ -11,7 +11,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 #include "lab/mesh/marching_cubes.hpp"
 
@@ -31,6 +30,7 @@ struct Cell {
 
 constexpr double kDistanceSteps = 32767.0;
 constexpr std::uint16_t kMaxWeight = 10'000;
+constexpr int kFillNeighbours = 2;            // of a face, that a missed cell is filled from
 constexpr double kMaxCoordinate = 524'288.0;  // cubes; what fits twice into 21 bits
 
 Cell unpack(std::int32_t packed) {
@@ -48,6 +48,36 @@ void average(Cell& cell, double distance) {
   if (cell.weight < kMaxWeight) ++cell.weight;
 }
 
+// The cells that rays have missed and that share faces with known ones: each has the mean of these.
+Tree fill_gaps(const Tree& tree, int min_weight) {
+  constexpr std::array<std::array<int, 3>, 6> kFaces{
+      {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
+  Tree filled(0);
+  openvdb::tree::ValueAccessor<const Tree> cells(tree);
+  openvdb::tree::ValueAccessor<Tree> result(filled);
+  const auto fill = [&](const Coord& at) {
+    int sum = 0, count = 0;
+    for (const auto& face : kFaces) {
+      const Cell cell = unpack(cells.getValue(at.offsetBy(face[0], face[1], face[2])));
+      if (cell.weight < min_weight) continue;
+      sum += cell.distance;
+      ++count;
+    }
+    if (count < kFillNeighbours) return;
+    result.setValue(at, pack({static_cast<std::int16_t>(sum / count), 1}));
+  };
+  for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf) {
+    for (auto value = leaf->cbeginValueOn(); value; ++value) {
+      if (unpack(*value).weight < min_weight) continue;
+      for (const auto& face : kFaces) {
+        const Coord at = value.getCoord().offsetBy(face[0], face[1], face[2]);
+        if (unpack(cells.getValue(at)).weight < min_weight && !result.isValueOn(at)) fill(at);
+      }
+    }
+  }
+  return filled;
+}
+
 /// The corners of the cube whose first corner is a cell's centre.
 struct Corners {
   std::array<float, 8> distance{};
@@ -58,9 +88,21 @@ struct Corners {
 class SurfaceMaker {
  public:
   SurfaceMaker(const Tree& tree, double voxel_m, int min_weight)
-      : cells_(tree), voxel_m_(static_cast<float>(voxel_m)), min_weight_(min_weight) {}
+      : known_(tree),
+        filled_(fill_gaps(tree, min_weight)),
+        cells_(known_),
+        filled_cells_(filled_),
+        voxel_m_(static_cast<float>(voxel_m)),
+        min_weight_(min_weight) {}
 
-  TriangleMesh make(const Tree& tree) {
+  TriangleMesh make() {
+    visit(known_);
+    visit(filled_);
+    return std::move(mesh_);
+  }
+
+ private:
+  void visit(const Tree& tree) {
     for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf) {
       for (auto cell = leaf->cbeginValueOn(); cell; ++cell) {
         const Coord at = cell.getCoord();
@@ -68,15 +110,15 @@ class SurfaceMaker {
         if (read_corners(at, corners)) add_triangles(at, corners);
       }
     }
-    return std::move(mesh_);
   }
 
- private:
   // False where a corner is unknown, or the surface passes by.
   bool read_corners(const Coord& at, Corners& corners) {
     for (int i = 0; i < 8; ++i) {
-      const Cell cell = unpack(cells_.getValue(at.offsetBy(i & 1, (i >> 1) & 1, (i >> 2) & 1)));
-      if (cell.weight < min_weight_) return false;
+      const Coord corner = at.offsetBy(i & 1, (i >> 1) & 1, (i >> 2) & 1);
+      Cell cell = unpack(cells_.getValue(corner));
+      if (cell.weight < min_weight_) cell = unpack(filled_cells_.getValue(corner));
+      if (cell.weight == 0) return false;
       corners.distance[static_cast<std::size_t>(i)] = cell.distance;
       if (cell.distance < 0) corners.inside |= static_cast<std::uint8_t>(1U << i);
     }
@@ -126,7 +168,10 @@ class SurfaceMaker {
     }
   };
 
+  const Tree& known_;
+  Tree filled_;
   openvdb::tree::ValueAccessor<const Tree> cells_;
+  openvdb::tree::ValueAccessor<const Tree> filled_cells_;
   float voxel_m_;
   int min_weight_;
   TriangleMesh mesh_;
@@ -145,7 +190,8 @@ struct TsdfVolume::Field {
     const Eigen::Vector3d origin = ray.origin * scale;
     const Eigen::Vector3d end = ray.end * scale;
     const double length = (end - origin).norm();
-    const bool is_usable = length > 0.0 && end.cwiseAbs().maxCoeff() < kMaxCoordinate;
+    const double farthest = std::max(end.cwiseAbs().maxCoeff(), origin.cwiseAbs().maxCoeff());
+    const bool is_usable = length > 0.0 && farthest < kMaxCoordinate;
     if (!is_usable) return;
     const Eigen::Vector3d direction = (end - origin) / length;
     const double truncation = options.truncation_voxels;
@@ -192,8 +238,7 @@ void TsdfVolume::add(std::span<const Ray> rays) {
 }
 
 TriangleMesh TsdfVolume::surface(int min_weight) const {
-  return SurfaceMaker(field_->tree, field_->options.voxel_m, std::max(1, min_weight))
-      .make(field_->tree);
+  return SurfaceMaker(field_->tree, field_->options.voxel_m, std::max(1, min_weight)).make();
 }
 
 std::size_t TsdfVolume::memory_bytes() const {
