@@ -100,7 +100,8 @@ TEST(TsdfVolume, AveragesNoiseAway) {
   ASSERT_GT(surface_area(mesh), 3.2);
   double sum = 0.0;
   for (const auto& vertex : mesh.vertices) {
-    EXPECT_NEAR(vertex.z(), 0.013F, 0.015F);
+    const bool is_inner = (vertex.head<2>().array() - 1.0F).abs().maxCoeff() < 0.8F;
+    EXPECT_NEAR(vertex.z(), 0.013F, is_inner ? 0.015F : 0.05F);  // few rays meet at the rim
     sum += static_cast<double>(vertex.z());
   }
   EXPECT_NEAR(sum / static_cast<double>(mesh.vertices.size()), 0.013, 0.003);
@@ -129,7 +130,8 @@ TEST(TsdfVolume, LeavesOutWhatTooFewRaysHaveSeen) {
 TEST(TsdfVolume, CarvesWhatRaysPassThrough) {
   auto rays = ground(0.0, 1);
   std::vector<Ray> passer_by;
-  for (const Ray& ray : rays) passer_by.push_back({ray.origin, {ray.end.x(), ray.end.y(), 1.5}});
+  for (const Ray& ray : rays)
+    passer_by.push_back({ray.origin, ray.origin + 0.85 * (ray.end - ray.origin)});
   const auto area_above = [&](bool carve) {
     TsdfOptions options;
     options.carve = carve;
@@ -141,7 +143,7 @@ TEST(TsdfVolume, CarvesWhatRaysPassThrough) {
     std::erase_if(mesh.triangles, [&](const auto& t) { return mesh.vertices[t[0]].z() < 0.5F; });
     return surface_area(mesh);
   };
-  EXPECT_GT(area_above(false), 3.0);
+  EXPECT_GT(area_above(false), 2.4);
   EXPECT_LT(area_above(true), 0.1);
 }
 

@@ -30,7 +30,6 @@ struct Cell {
 
 constexpr double kDistanceSteps = 32767.0;
 constexpr std::uint16_t kMaxWeight = 10'000;
-constexpr int kFillNeighbours = 2;            // of a face, that a missed cell is filled from
 constexpr double kMaxCoordinate = 524'288.0;  // cubes; what fits twice into 21 bits
 
 Cell unpack(std::int32_t packed) {
@@ -48,29 +47,29 @@ void average(Cell& cell, double distance) {
   if (cell.weight < kMaxWeight) ++cell.weight;
 }
 
-// The cells that rays have missed and that share faces with known ones: each has the mean of these.
+// The cells that rays have missed, between two known ones: each has the mean over such pairs, so
+// that nothing grows beyond what was seen.
 Tree fill_gaps(const Tree& tree, int min_weight) {
-  constexpr std::array<std::array<int, 3>, 6> kFaces{
-      {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
+  const std::array<Coord, 3> axes{Coord(1, 0, 0), Coord(0, 1, 0), Coord(0, 0, 1)};
   Tree filled(0);
   openvdb::tree::ValueAccessor<const Tree> cells(tree);
   openvdb::tree::ValueAccessor<Tree> result(filled);
   const auto fill = [&](const Coord& at) {
     int sum = 0, count = 0;
-    for (const auto& face : kFaces) {
-      const Cell cell = unpack(cells.getValue(at.offsetBy(face[0], face[1], face[2])));
-      if (cell.weight < min_weight) continue;
-      sum += cell.distance;
-      ++count;
+    for (const Coord& axis : axes) {
+      const Cell before = unpack(cells.getValue(at - axis));
+      const Cell behind = unpack(cells.getValue(at + axis));
+      if (before.weight < min_weight || behind.weight < min_weight) continue;
+      sum += before.distance + behind.distance;
+      count += 2;
     }
-    if (count < kFillNeighbours) return;
-    result.setValue(at, pack({static_cast<std::int16_t>(sum / count), 1}));
+    if (count > 0) result.setValue(at, pack({static_cast<std::int16_t>(sum / count), 1}));
   };
   for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf) {
     for (auto value = leaf->cbeginValueOn(); value; ++value) {
       if (unpack(*value).weight < min_weight) continue;
-      for (const auto& face : kFaces) {
-        const Coord at = value.getCoord().offsetBy(face[0], face[1], face[2]);
+      for (const Coord& axis : axes) {  // every gap has a known cell before it
+        const Coord at = value.getCoord() + axis;
         if (unpack(cells.getValue(at)).weight < min_weight && !result.isValueOn(at)) fill(at);
       }
     }

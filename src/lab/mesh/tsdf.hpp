@@ -3,8 +3,8 @@
 // Follows VDBFusion (Vizzo et al., Sensors 2022): each ray updates the cubes about its end with
 // their signed distance to it, averaged over all rays (Curless and Levoy, SIGGRAPH 1996); marching
 // cubes finds the surface where the sign changes. Two differences: distances are taken along the
-// ray, and a cube that all rays have missed takes the mean of its neighbours, so that gaps of one
-// cube between a sensor's beams close.
+// ray, and a cube that all rays have missed, between two that they have not, takes their mean, so
+// that gaps of one cube between a sensor's beams close.
 #pragma once
 
 #include <cstddef>
@@ -38,8 +38,8 @@ class TsdfVolume {
   /// Adds rays, in the map's frame. Those that end over 2^19 cubes from its origin are passed over.
   void add(std::span<const Ray> rays);
 
-  /// The surface between cubes that at least `min_weight` rays have updated, or that two neighbours
-  /// of that kind vouch for.
+  /// The surface between cubes that at least `min_weight` rays have updated, or that lie
+  /// between two of that kind.
   [[nodiscard]] TriangleMesh surface(int min_weight = 1) const;
 
   [[nodiscard]] std::size_t memory_bytes() const;
