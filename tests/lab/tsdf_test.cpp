@@ -81,11 +81,11 @@ TEST(TsdfVolume, ASphereSeenFromWithinIsClosedAndOfItsSize) {
 // Rays from 10 m above onto the ground at height `noise` about 0, 2 x 2 m, every 2 cm.
 std::vector<Ray> ground(double noise, unsigned seed) {
   std::mt19937 random(seed);
-  std::normal_distribution<double> height(0.0, noise);
+  std::normal_distribution<double> height(0.0, 1.0);
   std::vector<Ray> rays;
   for (int i = 0; i < 100; ++i) {
     for (int k = 0; k < 100; ++k) {
-      const double z = noise > 0.0 ? height(random) : 0.0;
+      const double z = noise * height(random);
       rays.push_back({{1.0, 1.0, 10.0}, {0.02 * i, 0.02 * k, z + 0.013}});
     }
   }
