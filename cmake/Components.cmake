@@ -49,6 +49,13 @@ if(SWEEPCAST_APPS OR SWEEPCAST_TESTS)
   sweepcast_component(draco "${draco_FOUND}" libdraco-dev "the comparison with Draco")
   include(${CMAKE_CURRENT_LIST_DIR}/OpenVdb.cmake)
   sweepcast_component(openvdb "${openvdb_FOUND}" "libopenvdb-dev libboost-dev" "meshing")
+  pkg_check_modules(openjpeg QUIET IMPORTED_TARGET GLOBAL libopenjp2>=2.4)
+  sweepcast_component(openjpeg "${openjpeg_FOUND}" libopenjp2-7-dev "the comparison with JPEG 2000")
+  find_package(charls 2.3 QUIET)
+  sweepcast_component(charls "${charls_FOUND}" libcharls-dev "the comparison with JPEG-LS")
+  # Two of its libraries do; find_package(PCL) would ask for VTK and more.
+  pkg_check_modules(pcl QUIET IMPORTED_TARGET GLOBAL pcl_octree pcl_common)
+  sweepcast_component(pcl "${pcl_FOUND}" libpcl-dev "the comparison with PCL's octree")
 endif()
 
 if(SWEEPCAST_TESTS)

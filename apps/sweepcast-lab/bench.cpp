@@ -77,7 +77,8 @@ Status write_csv(const std::vector<BenchRow>& rows, const fs::path& path) {
   return write_file(path, std::as_bytes(std::span(text)));
 }
 
-void report_json(const std::vector<BenchRow>& rows, std::size_t sweep_count, int runs) {
+void report_json(const std::vector<BenchRow>& rows, std::size_t sweep_count, int runs,
+                 const std::vector<std::string>& left_out) {
   nlohmann::ordered_json report{
       {"sweeps", sweep_count}, {"runs", runs}, {"rows", nlohmann::ordered_json::array()}};
   for (const BenchRow& row : rows) {
@@ -86,26 +87,31 @@ void report_json(const std::vector<BenchRow>& rows, std::size_t sweep_count, int
     add_distortion(entry, row.distortion);
     report["rows"].push_back(std::move(entry));
   }
+  report["left_out"] = left_out;
   print_json(report);
 }
 
 void report_table(const std::vector<BenchRow>& rows, std::size_t sweep_count, int runs) {
+  std::size_t codec_width = 9;
   std::size_t width = 7;
-  for (const BenchRow& row : rows) width = std::max(width, row.setting.size());
+  for (const BenchRow& row : rows) {
+    codec_width = std::max(codec_width, row.codec.size());
+    width = std::max(width, row.setting.size());
+  }
   fmt::print(
-      "{:9} {:{}}   ratio  kept %  mean cm  D1 dB  D2 dB  F 2cm  F 5cm F 10cm F 20cm  "
+      "{:{}} {:{}}   ratio  kept %  mean cm  D1 dB  D2 dB  F 2cm  F 5cm F 10cm F 20cm  "
       "azim deg  elev deg  enc ms  dec ms\n",
-      "codec", "setting", width);
+      "codec", codec_width, "setting", width);
   for (const BenchRow& row : rows) {
     const lab::Distortion& d = row.distortion;
     fmt::print(
-        "{:9} {:{}} {:>7.1f} {:>7.1f} {:>8.2f} {:>6.2f} {:>6.2f} {:>6.2f} {:>6.2f} {:>6.2f} "
+        "{:{}} {:{}} {:>7.1f} {:>7.1f} {:>8.2f} {:>6.2f} {:>6.2f} {:>6.2f} {:>6.2f} {:>6.2f} "
         "{:>6.2f} "
         "{:>+9.4f} {:>+9.4f} {:>7.2f} {:>7.2f}\n",
-        row.codec, row.setting, width, row.ratio, 100.0 * row.points_out / row.points_in,
-        100.0 * d.mean_o2d, d.d1_psnr, d.d2_psnr, d.f_score[0], d.f_score[1], d.f_score[2],
-        d.f_score[3], d.mean_azimuth_error_deg, d.mean_elevation_error_deg, row.encode_ms,
-        row.decode_ms);
+        row.codec, codec_width, row.setting, width, row.ratio,
+        100.0 * row.points_out / row.points_in, 100.0 * d.mean_o2d, d.d1_psnr, d.d2_psnr,
+        d.f_score[0], d.f_score[1], d.f_score[2], d.f_score[3], d.mean_azimuth_error_deg,
+        d.mean_elevation_error_deg, row.encode_ms, row.decode_ms);
   }
   fmt::print(
       "Mean over {} sweeps; times are CPU time of one thread, median of {} runs a sweep; "
@@ -124,18 +130,20 @@ Status check_outputs(const BenchCommand& options) {
 Status bench(const BenchCommand& options) {
   const auto sweeps = collect_clouds(options.inputs);
   if (!sweeps) return tl::unexpected(sweeps.error());
-  auto peers = make_peers(options.settings);
-  if (!peers) return tl::unexpected(peers.error());
+  auto choice = make_peers(options.settings);
+  if (!choice) return tl::unexpected(choice.error());
+  lab::Peers& peers = choice->peers;
   if (Status outputs = check_outputs(options); !outputs) return outputs;
-  if (Status added = add_bounded_peers(options.settings, *sweeps, *peers); !added) return added;
+  if (Status added = add_bounded_peers(options.settings, *sweeps, peers); !added) return added;
   Progress progress("measuring", sweeps->size());
   const auto on_sweep = [&progress](std::string_view name) { progress.step(name); };
-  const auto rows = lab::bench(*sweeps, *peers, {.runs = options.runs, .on_sweep = on_sweep});
+  const auto rows = lab::bench(*sweeps, peers, {.runs = options.runs, .on_sweep = on_sweep});
   if (!rows) return tl::unexpected(rows.error());
   if (options.json) {
-    report_json(*rows, sweeps->size(), options.runs);
+    report_json(*rows, sweeps->size(), options.runs, choice->left_out);
   } else {
     report_table(*rows, sweeps->size(), options.runs);
+    for (const std::string& absent : choice->left_out) fmt::print("Left out: {}.\n", absent);
   }
   if (!options.csv.empty()) {
     if (Status written = write_csv(*rows, options.csv); !written) return written;

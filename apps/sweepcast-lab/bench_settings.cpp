@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <iterator>
+#include <map>
 #include <string_view>
 #include <utility>
 
 #include "common/codec_options.hpp"
 #include "common/validators.hpp"
 #include "lab/peers/draco.hpp"
+#include "lab/peers/registry.hpp"
 #include "lab/peers/sweepcast_codec.hpp"
 #include "sweepcast/cloud_file.hpp"
 #include "sweepcast/ladder.hpp"
@@ -158,13 +161,36 @@ Status add_beam(const BenchSettings& options, lab::Peers& peers) {
   return {};
 }
 
-Status add_draco(lab::Peers& peers) {
-  for (int bits = 8; bits <= 14; ++bits) {
-    auto peer = lab::make_draco_peer({.quantisation_bits = bits, .compression_level = 7});
-    if (!peer) return tl::unexpected(peer.error());
-    peers.push_back(std::move(*peer));
+constexpr std::string_view kBounded = "draco-bound";  // depends on the sweeps
+
+/// Adds the ladders of the other codecs behind ours. Gives what "all" leaves out.
+Result<std::vector<std::string>> add_others(const BenchSettings& options, lab::Peers& peers) {
+  std::vector<std::string> names = options.peers;
+  names.erase(std::remove(names.begin(), names.end(), kBounded), names.end());
+  auto choice = lab::make_peers(names);
+  if (!choice) return tl::unexpected(std::move(choice.error()));
+  std::move(choice->peers.begin(), choice->peers.end(), std::back_inserter(peers));
+  return std::move(choice->left_out);
+}
+
+void add_peer_option(CLI::App& app, std::vector<std::string>& peers) {
+  std::vector<std::string> names;
+  std::string help = "Other codecs, each from a ratio of about 10 to 400: ";
+  for (const lab::PeerKind& kind : lab::peer_kinds()) {
+    names.emplace_back(kind.name);
+    help += fmt::format("{} ({}); ", kind.name, kind.what);
   }
-  return {};
+  names.emplace_back(kBounded);
+  names.emplace_back("all");
+  help += fmt::format(
+      "{} (Draco, at each --max-error the coarsest step that keeps every point "
+      "within); all (but that, as far as they are there)",
+      kBounded);
+  app.add_option("--peers", peers, help)
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(items_of(names))
+      ->type_name("NAME,...|all");
 }
 
 void add_beam_options(CLI::App& app, BenchSettings& options) {
@@ -190,8 +216,9 @@ void add_beam_options(CLI::App& app, BenchSettings& options) {
 
 }  // namespace
 
-Result<lab::Peers> make_peers(const BenchSettings& options) {
-  lab::Peers peers;
+Result<lab::PeerChoice> make_peers(const BenchSettings& options) {
+  lab::PeerChoice choice;
+  lab::Peers& peers = choice.peers;
   if (contains(options.codecs, "rcpcc")) {
     if (const Status added = add_rcpcc(options, peers); !added) {
       return tl::unexpected(added.error());
@@ -202,15 +229,15 @@ Result<lab::Peers> make_peers(const BenchSettings& options) {
       return tl::unexpected(added.error());
     }
   }
-  if (contains(options.peers, "draco")) {
-    if (const Status added = add_draco(peers); !added) return tl::unexpected(added.error());
-  }
-  return peers;
+  auto left_out = add_others(options, peers);
+  if (!left_out) return tl::unexpected(std::move(left_out.error()));
+  choice.left_out = std::move(*left_out);
+  return choice;
 }
 
 Status add_bounded_peers(const BenchSettings& options, std::span<const fs::path> sweeps,
                          lab::Peers& peers) {
-  if (!contains(options.peers, "draco-bound")) return {};
+  if (!contains(options.peers, kBounded)) return {};
   std::vector<PointCloud> clouds(sweeps.size());
   for (std::size_t i = 0; i < sweeps.size(); ++i) {
     if (Status read = read_cloud(sweeps[i], clouds[i]); !read) return read;
@@ -249,13 +276,7 @@ void add_bench_settings(CLI::App& app, BenchSettings& settings) {
   app.add_option("--zstd", settings.rcpcc.zstd_level,
                  fmt::format("Level of zstd for all settings [{}]", RcpccOptions{}.zstd_level))
       ->check(CLI::Range(1, 22));
-  app.add_option("--peers", settings.peers,
-                 "Other codecs: draco (kd-tree, qp 8 to 14, cl 7); draco-bound (kd-tree, at each "
-                 "--max-error the coarsest step that keeps every point within)")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->check(items_of({"draco", "draco-bound"}))
-      ->type_name("NAME,...");
+  add_peer_option(app, settings.peers);
 }
 
 }  // namespace sweepcast::app

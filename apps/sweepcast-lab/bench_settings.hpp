@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "lab/peers/peer.hpp"
+#include "lab/peers/registry.hpp"
 #include "sweepcast/encoder.hpp"
 #include "sweepcast/status.hpp"
 
@@ -24,8 +24,8 @@ struct BenchSettings {
   std::vector<std::size_t> target_bytes;        ///< settings of beam
   std::vector<std::string> efforts{"default"};  ///< of every setting of beam
   bool fill = false;                            ///< settings of beam that thin: filled as well
-  std::vector<std::string> peers;
-  RcpccOptions rcpcc;  ///< what all settings of rcpcc share
+  std::vector<std::string> peers;               ///< other codecs, by name; "all"
+  RcpccOptions rcpcc;                           ///< what all settings of rcpcc share
 };
 
 /// Adds the options that choose them. Parsing fills `settings`, which must outlive it.
@@ -33,7 +33,7 @@ void add_bench_settings(CLI::App& app, BenchSettings& settings);
 
 /// Every codec at every setting, but for those that depend on the sweeps. Errors: those of the
 /// codecs; invalid_argument (--params).
-[[nodiscard]] Result<lab::Peers> make_peers(const BenchSettings& options);
+[[nodiscard]] Result<lab::PeerChoice> make_peers(const BenchSettings& options);
 
 /// Adds Draco at the coarsest step that keeps each of the bounds on all sweeps, where it is asked
 /// for. Errors: those of `read_cloud` and `lab::coarsest_draco_step`.

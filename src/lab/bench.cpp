@@ -69,12 +69,13 @@ Status run(Peer& peer, const PointCloud& cloud, Trial& trial) {
   const auto bytes = peer.encode(cloud);
   const double encoded = thread_ms();
   if (!bytes) return tl::unexpected(bytes.error());
+  const double encode_child = peer.child_ms();
   const double decode_begin = thread_ms();
   Status decoded = peer.decode(*bytes, trial.decoded);
   const double end = thread_ms();
   if (!decoded) return decoded;
-  trial.encode_ms.push_back(encoded - begin);
-  trial.decode_ms.push_back(end - decode_begin);
+  trial.encode_ms.push_back(encoded - begin + encode_child);
+  trial.decode_ms.push_back(end - decode_begin + peer.child_ms());
   trial.bytes = bytes->size();
   return {};
 }

@@ -24,7 +24,9 @@ struct BenchRow {
   double points_out = 0;     ///< of a decoded sweep
   double points_filled = 0;  ///< of these, not measured but interpolated by the decoder
   Distortion distortion;
-  double encode_ms = 0;  ///< CPU time of one thread; of each sweep the median over the runs
+  /// CPU time of one thread, and of programs that the codec runs; of each sweep the median over
+  /// the runs.
+  double encode_ms = 0;
   double decode_ms = 0;  ///< the same
 };
 

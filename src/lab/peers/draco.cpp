@@ -158,6 +158,16 @@ Result<std::unique_ptr<Peer>> make_draco_peer(const DracoOptions& options) {
   return std::make_unique<DracoPeer>(options);
 }
 
+Result<Peers> draco_ladder() {
+  Peers peers;
+  for (int bits = 7; bits <= 14; ++bits) {
+    auto peer = make_draco_peer({.quantisation_bits = bits, .compression_level = 7});
+    if (!peer) return tl::unexpected(peer.error());
+    peers.push_back(std::move(*peer));
+  }
+  return peers;
+}
+
 namespace {
 
 /// Whether no point misses its place by more than `most` (metres), else the worst error so far.

@@ -22,6 +22,9 @@ struct DracoOptions {
 /// from 0 up), unsupported (this build has no Draco).
 [[nodiscard]] Result<std::unique_ptr<Peer>> make_draco_peer(const DracoOptions& options);
 
+/// 7 to 14 bits, level 7: from a ratio of about 450 to 10. Errors: unsupported.
+[[nodiscard]] Result<Peers> draco_ladder();
+
 /// The largest distance of a finite point from where Draco puts it at an explicit step, metres.
 [[nodiscard]] double draco_worst_error(const PointCloud& cloud, double step_m);
 

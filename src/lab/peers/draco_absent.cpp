@@ -16,6 +16,10 @@ Result<std::unique_ptr<Peer>> make_draco_peer(const DracoOptions& /*options*/) {
   return absent();
 }
 
+Result<Peers> draco_ladder() {
+  return absent();
+}
+
 double draco_worst_error(const PointCloud& /*cloud*/, double /*step_m*/) {
   return 0.0;
 }

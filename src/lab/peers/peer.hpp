@@ -1,5 +1,5 @@
 // A codec as the benchmark sees it. Adding one is a file beside this that implements `Peer` and a
-// function that makes it.
+// function that makes its ladder of settings, which a line in registry.cpp names.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,9 @@
 namespace sweepcast::lab {
 
 /// A codec at one setting. What `encode` and `decode` do is what the benchmark times, so both do
-/// what a user of the codec would have to do, no less and no more.
+/// what a user of the codec would have to do, no less and no more. Whatever comes in, decoded
+/// points are finite; points that a codec cannot represent are missing among them. Damaged bytes
+/// give an error or another cloud, nothing worse.
 class Peer {
  public:
   Peer(std::string codec, std::string setting)
@@ -32,6 +34,9 @@ class Peer {
 
   /// Decodes what `encode` gave into `cloud`, whose memory is reused.
   [[nodiscard]] virtual Status decode(std::span<const std::byte> bytes, PointCloud& cloud) = 0;
+
+  /// CPU time of other programs that the last call ran and waited for, milliseconds.
+  [[nodiscard]] virtual double child_ms() const { return 0.0; }
 
  private:
   std::string codec_;
