@@ -42,6 +42,7 @@ sweepcast_test(codec/encoder)
 sweepcast_test(codec/frame)
 target_include_directories(codec_frame_test PRIVATE ${PROJECT_SOURCE_DIR}/fuzz)
 sweepcast_test(codec/mutation)
+sweepcast_test(codec/stages)
 target_include_directories(codec_mutation_test PRIVATE ${PROJECT_SOURCE_DIR}/fuzz)
 sweepcast_test(codec/real_sweeps sweepcast_measure)
 

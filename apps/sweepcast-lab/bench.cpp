@@ -35,6 +35,7 @@ struct BenchCommand {
   int runs = 5;
   fs::path csv;
   fs::path plot;
+  bool stages = false;
   bool json = false;
 };
 
@@ -85,6 +86,10 @@ void report_json(const std::vector<BenchRow>& rows, std::size_t sweep_count, int
     nlohmann::ordered_json entry{{"codec", row.codec}, {"setting", row.setting}};
     for (const Column& column : kColumns) entry[column.name] = number_or_null(row.*column.value);
     add_distortion(entry, row.distortion);
+    for (const auto& [key, stages] : {std::pair{"encode_stages_ms", &row.encode_stages},
+                                      std::pair{"decode_stages_ms", &row.decode_stages}}) {
+      for (const lab::StageMean& stage : *stages) entry[key][stage.stage] = stage.ms;
+    }
     report["rows"].push_back(std::move(entry));
   }
   report["left_out"] = left_out;
@@ -119,6 +124,21 @@ void report_table(const std::vector<BenchRow>& rows, std::size_t sweep_count, in
       sweep_count, runs);
 }
 
+void report_stages(const std::vector<BenchRow>& rows) {
+  for (const BenchRow& row : rows) {
+    for (const auto& [what, stages] :
+         {std::pair{"encoding", &row.encode_stages}, std::pair{"decoding", &row.decode_stages}}) {
+      double sum = 0.0;
+      for (const lab::StageMean& stage : *stages) sum += stage.ms;
+      if (sum > 0.0) fmt::print("\n{} {}, {}: {:.2f} ms\n", row.codec, row.setting, what, sum);
+      for (const lab::StageMean& stage : *stages) {
+        fmt::print("  {:28} {:>7.2f} ms {:>5.1f} %\n", stage.stage, stage.ms,
+                   100.0 * stage.ms / sum);
+      }
+    }
+  }
+}
+
 /// Whether the files can be written, before the time is spent that measuring takes.
 Status check_outputs(const BenchCommand& options) {
   if (!options.csv.empty()) {
@@ -144,6 +164,7 @@ Status bench(const BenchCommand& options) {
   } else {
     report_table(*rows, sweeps->size(), options.runs);
     for (const std::string& absent : choice->left_out) fmt::print("Left out: {}.\n", absent);
+    if (options.stages) report_stages(*rows);
   }
   if (!options.csv.empty()) {
     if (Status written = write_csv(*rows, options.csv); !written) return written;
@@ -167,6 +188,7 @@ void add_bench(CLI::App& app, Command& command) {
   sub->add_option("--csv", options->csv, "Write the rows to a file too")->type_name("FILE");
   sub->add_option("--plot", options->plot, "Draw rate-distortion curves (needs gnuplot)")
       ->type_name("FILE.png|FILE.svg");
+  sub->add_flag("--stages", options->stages, "Print what the stages of our codecs take, too");
   sub->add_flag("--json", options->json, "Print the rows as JSON");
   sub->footer("Example: sweepcast bench drive --peers draco --plot bench.png");
   sub->callback([options, &command] {

@@ -7,6 +7,7 @@
 
 #include "sweepcast/cloud.hpp"
 #include "sweepcast/frame.hpp"
+#include "sweepcast/stages.hpp"
 #include "sweepcast/status.hpp"
 
 namespace sweepcast {
@@ -18,6 +19,7 @@ struct DecoderOptions {
   /// Codec beam: points that were left out because interpolation comes near them are appended as
   /// it has them, marked in `PointCloud::filled`; their other attributes are 0.
   bool fill = false;
+  StageClock* stages = nullptr;  ///< learns what each stage takes, where there is one
 };
 
 /// Makes clouds of frames. Needs no parameter beside the frame and trusts nothing in it.

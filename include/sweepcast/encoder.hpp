@@ -10,6 +10,7 @@
 #include "sweepcast/cloud.hpp"
 #include "sweepcast/frame.hpp"
 #include "sweepcast/ladder.hpp"
+#include "sweepcast/stages.hpp"
 #include "sweepcast/status.hpp"
 
 namespace sweepcast {
@@ -109,6 +110,7 @@ struct EncoderOptions {
   Crop crop{};
   RcpccOptions rcpcc{};
   BeamOptions beam{};
+  StageClock* stages = nullptr;  ///< learns what each stage takes, where there is one
 };
 
 /// Makes frames of sweeps. Keeps its buffers: from the second sweep of a kind on, `encode`

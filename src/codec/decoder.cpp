@@ -8,7 +8,8 @@
 namespace sweepcast {
 
 struct Decoder::State {
-  explicit State(const DecoderOptions& decoder_options) : options(decoder_options) {}
+  explicit State(const DecoderOptions& decoder_options)
+      : options(decoder_options), beam(options.stages), rcpcc(options.stages) {}
 
   DecoderOptions options;
   FrameHeader header;

@@ -3,6 +3,7 @@
 #include "codec/beam/codec.hpp"
 #include "codec/frame_layout.hpp"
 #include "codec/rcpcc/codec.hpp"
+#include "core/stage_lap.hpp"
 
 namespace sweepcast {
 namespace {
@@ -41,12 +42,14 @@ Status check(const CloudView& cloud, const SweepInfo& info) {
 struct Encoder::State {
   explicit State(const EncoderOptions& options)
       : codec(options.codec),
-        beam(options.beam, options.crop),
-        rcpcc(options.rcpcc, options.crop) {}
+        beam(options.beam, options.crop, options.stages),
+        rcpcc(options.rcpcc, options.crop, options.stages),
+        stages(options.stages) {}
 
   CodecId codec;
   beam::Encoder beam;
   rcpcc::Encoder rcpcc;
+  StageClock* stages;
   PartList parts;
   SweepCounts counts;
   std::vector<std::byte> frame;
@@ -74,7 +77,9 @@ Result<std::span<const std::byte>> Encoder::encode(const CloudView& cloud, const
   const Status status = s.codec == CodecId::beam ? s.beam.encode(cloud, info, s.parts, s.counts)
                                                  : s.rcpcc.encode(cloud, s.parts, s.counts);
   if (!status) return tl::unexpected(status.error());
+  StageLap lap(s.stages);
   write_frame(s.codec, info, s.counts, s.parts, s.frame);
+  lap.end("frame");
   return s.frame;
 }
 

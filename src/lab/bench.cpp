@@ -1,6 +1,7 @@
 #include "lab/bench.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <ctime>
 
@@ -29,11 +30,22 @@ struct Trial {
   PointCloud decoded;
 };
 
+/// Adds what the stages took of each of `runs` runs.
+void add_stages(std::span<const StageTime> stages, int runs, std::vector<StageMean>& sums) {
+  for (const StageTime& stage : stages) {
+    auto sum = std::find_if(sums.begin(), sums.end(),
+                            [&](const StageMean& known) { return known.stage == stage.stage; });
+    if (sum == sums.end()) sum = sums.insert(sum, {std::string(stage.stage), 0.0});
+    sum->ms += std::chrono::duration<double, std::milli>(stage.time).count() / runs;
+  }
+}
+
 /// What is summed up over the sweeps for one peer.
 struct Totals {
   double bytes = 0, points_in = 0, points_out = 0, points_filled = 0;
   double encode_ms = 0, decode_ms = 0;
   DistortionMean distortion;
+  std::vector<StageMean> encode_stages, decode_stages;
 
   void add(Trial& trial, const PointCloud& cloud, const Reference& reference) {
     bytes += static_cast<double>(trial.bytes);
@@ -60,6 +72,11 @@ struct Totals {
     row.distortion = distortion.mean();
     row.encode_ms = encode_ms / sweeps;
     row.decode_ms = decode_ms / sweeps;
+    row.encode_stages = encode_stages;
+    row.decode_stages = decode_stages;
+    for (auto* stages : {&row.encode_stages, &row.decode_stages}) {
+      for (StageMean& stage : *stages) stage.ms /= sweeps;
+    }
     return row;
   }
 };
@@ -87,6 +104,7 @@ Status run_all(const Peers& peers, const PointCloud& cloud, int runs, std::vecto
       if (k <= 1) {  // forgets the last sweep, then the run that warmed up
         trials[i].encode_ms.clear();
         trials[i].decode_ms.clear();
+        peers[i]->forget_stages();
       }
       const Status status = run(*peers[i], cloud, trials[i]);
       if (!status) {
@@ -115,7 +133,11 @@ Result<std::vector<BenchRow>> bench(std::span<const std::filesystem::path> sweep
       return fail(status.error().code, path.string() + ": " + status.error().message);
     }
     const Reference reference(cloud);
-    for (std::size_t i = 0; i < peers.size(); ++i) totals[i].add(trials[i], cloud, reference);
+    for (std::size_t i = 0; i < peers.size(); ++i) {
+      totals[i].add(trials[i], cloud, reference);
+      add_stages(peers[i]->encode_stages(), options.runs, totals[i].encode_stages);
+      add_stages(peers[i]->decode_stages(), options.runs, totals[i].decode_stages);
+    }
     if (options.on_sweep) options.on_sweep(path.filename().string());
   }
   std::vector<BenchRow> rows;

@@ -14,6 +14,12 @@
 
 namespace sweepcast::lab {
 
+/// What a stage of a codec takes of a sweep.
+struct StageMean {
+  std::string stage;
+  double ms = 0;  ///< by the clock, mean over the sweeps and the timed runs
+};
+
 /// A codec at one setting, mean over the sweeps.
 struct BenchRow {
   std::string codec;
@@ -27,7 +33,8 @@ struct BenchRow {
   /// CPU time of one thread, and of programs that the codec runs; of each sweep the median over
   /// the runs.
   double encode_ms = 0;
-  double decode_ms = 0;  ///< the same
+  double decode_ms = 0;                                 ///< the same
+  std::vector<StageMean> encode_stages, decode_stages;  ///< of codecs that tell them
 };
 
 struct BenchOptions {

@@ -19,6 +19,7 @@
 #include "codec/beam/range_layers.hpp"
 #include "codec/beam/sweep_imager.hpp"
 #include "codec/frame_layout.hpp"
+#include "core/stage_lap.hpp"
 #include "rate/byte_budget.hpp"
 #include "sensor/beam_grid.hpp"
 #include "sweepcast/cloud.hpp"
@@ -53,7 +54,7 @@ enum class Part : std::uint8_t {
 class Encoder {
  public:
   /// Options must have passed `check`.
-  Encoder(const BeamOptions& options, const Crop& crop);
+  Encoder(const BeamOptions& options, const Crop& crop, StageClock* stages = nullptr);
 
   /// See `sweepcast::Encoder`.
   [[nodiscard]] Status set_target_bytes(std::size_t bytes);
@@ -109,11 +110,15 @@ class Encoder {
   std::vector<LatticePoint> lattice_;        ///< points without a cell
   std::vector<std::uint32_t> extra_points_;  ///< of `lattice_`, indices into the cloud
   AttributeEncoder attributes_;
+  StageClock* stages_;
+  StageLap lap_{nullptr};
 };
 
 /// Makes clouds of frames; keeps the sensor models that it has seen.
 class Decoder {
  public:
+  explicit Decoder(StageClock* stages = nullptr) : stages_(stages) {}
+
   /// Fills `cloud` from a frame whose head is parsed, from its first `layers` layers. `fill`: what
   /// was left out is appended as interpolation has it, and marked.
   /// Errors: truncated, corrupt, limit, unsupported (the frame's model came with an earlier frame
@@ -153,6 +158,8 @@ class Decoder {
   PointOrder order_;                      ///< empty where points come firing by firing
   std::vector<std::uint32_t> next_slot_;  ///< of each firing
   std::vector<std::uint32_t> slots_;      ///< places of `placed_` in the cloud
+  StageClock* stages_;
+  StageLap lap_{nullptr};
 };
 
 }  // namespace sweepcast::beam

@@ -66,16 +66,20 @@ std::optional<int> layers_of_grid(std::span<const std::byte> grid) {
 // The same way back.
 Status Decoder::decode(std::span<const std::byte> frame, const FrameHeader& header, int layers,
                        bool fill, PointCloud& cloud) {
+  lap_ = StageLap(stages_);
   if (Status status = read_model_part(frame, header); !status) return status;
   const auto grid = checked_part(frame, header, static_cast<std::uint8_t>(Part::grid));
   if (!grid) return tl::unexpected(grid.error());
   if (!read_grid(*grid, most_cells(header.counts.points_in)))
     return fail(ErrorCode::corrupt, "the frame's grid cannot be right");
+  lap_.end("sensor model");
   if (Status status = read_extras(frame, header); !status) return status;
+  lap_.end("points without a cell");
   complete_ = true;
   if (image_.cols > 0) {
     if (Status status = read_layers(frame, header, layers); !status) return status;
     unprojector_->unproject(image_, placed_);
+    lap_.end("projection back");
   } else if (Status status = attributes_.begin(frame, header, nullptr, {}, lattice_.size());
              !status) {
     return status;
@@ -88,8 +92,11 @@ Status Decoder::decode(std::span<const std::byte> frame, const FrameHeader& head
   }
   if (Status status = read_exact_part(frame, header); !status) return status;
   if (Status status = read_slots(frame, header); !status) return status;
+  lap_.end("exact coordinates, order");
   assemble(cloud);
+  lap_.end("points to their places");
   if (fill && image_.cols > 0) append_filled(cloud);
+  lap_.end("filling");
   return {};
 }
 
@@ -233,6 +240,7 @@ Status Decoder::read_layers(std::span<const std::byte> frame, const FrameHeader&
       !status) {
     return status;
   }
+  lap_.end("firings");
   layers_.begin(plan_);
   layers = std::clamp(layers, 1, LayerCoder::layers(plan_));
   complete_ = layers == LayerCoder::layers(plan_);
@@ -256,9 +264,11 @@ Status Decoder::read_layers(std::span<const std::byte> frame, const FrameHeader&
     if (!layers_.decode(layer, *bytes, {azimuth_, height_})) {
       return fail(ErrorCode::corrupt, "a layer of the frame ends too early");
     }
+    lap_.end("ranges");
     if (Status status = attributes_.read_layer(frame, header, layer, layers_); !status) {
       return status;
     }
+    lap_.end("attributes");
   }
 
   layers_.read(range_, state_);

@@ -99,8 +99,8 @@ Status check(const BeamOptions& options) {
   return {};
 }
 
-Encoder::Encoder(const BeamOptions& options, const Crop& crop)
-    : options_(options), imager_(crop), quality_(quality_of(options)) {
+Encoder::Encoder(const BeamOptions& options, const Crop& crop, StageClock* stages)
+    : options_(options), imager_(crop), quality_(quality_of(options)), stages_(stages) {
   if (options_.target_bytes > 0) budget_.emplace(options_.target_bytes);
 }
 
@@ -122,8 +122,11 @@ Status Encoder::encode(const CloudView& cloud, const SweepInfo& info, PartList& 
   counts.points_in = static_cast<std::uint32_t>(cloud.size);
   parts.clear();
   if (budget_) quality_ = beam_quality(budget_->begin());
+  lap_ = StageLap(stages_);
   attributes_.read(cloud, options_);
+  lap_.end("attributes");
   imager_.project(cloud, error_m(), counts);
+  lap_.end("sensor model, range image");
   const bool may_choose = !budget_ && !options_.level && !options_.lossless &&
                           options_.max_error_m <= kWidestCrowd && options_.effort != Effort::fast &&
                           imager_.image().cols > 0;
@@ -234,15 +237,21 @@ void Encoder::write_sweep(const CloudView& cloud, PartList& parts, SweepCounts& 
   const SensorModel* model = image.cols > 0 ? imager_.model() : nullptr;
   if (model != nullptr) {
     plan_layers();
+    lap_.end("sensor model, range image");
     move_missed();
+    lap_.end("points that thinning misses");
   }
   write_grid(parts);
+  lap_.end("firings");
   write_extras(parts, counts);
+  lap_.end("points without a cell");
   attributes_.begin(image, model != nullptr ? &plan_ : nullptr, first_column_, range_, parts);
   attributes_.write_extras(extra_points_, parts);
+  lap_.end("attributes");
   if (model != nullptr) write_layers(parts, counts);
   if (options_.lossless || options_.keep_order) write_original(cloud, parts);
   restore_missed();
+  lap_.end("exact coordinates, order");
 }
 
 // Moves to the extras what thinning would let vanish: found by coding the layers once.
@@ -293,7 +302,9 @@ void Encoder::write_layers(PartList& parts, SweepCounts& counts) {
   for (int layer = 0; layer < LayerCoder::layers(plan_); ++layer) {
     parts.begin(static_cast<std::uint8_t>(static_cast<int>(Part::layer) + layer));
     layers_.encode(layer, {range_, azimuth_, height_}, parts.bytes());
+    lap_.end("ranges");
     attributes_.write_layer(layer, layers_, parts);
+    lap_.end("attributes");
   }
   const std::uint32_t points = count_points(range_);
   std::uint32_t measured = points;

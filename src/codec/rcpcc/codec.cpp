@@ -105,42 +105,49 @@ Status check(const RcpccOptions& o) {
   return {};
 }
 
-Encoder::Encoder(const RcpccOptions& options, const Crop& crop)
+Encoder::Encoder(const RcpccOptions& options, const Crop& crop, StageClock* stages)
     : surface_options_{options.block_size, millimetres(options.params.threshold_m), options.model},
       unfit_options_{options.region_size, millimetres(options.params.quantiser_step_m),
                      options.unfit, options.rounding},
       projector_(options, crop),
-      zstd_(options.zstd_level) {}
+      zstd_(options.zstd_level),
+      stages_(stages) {}
 
 // One sweep's way: range image, surfaces, what they leave, bytes.
 Status Encoder::encode(const CloudView& cloud, PartList& parts, SweepCounts& counts) {
+  lap_ = StageLap(stages_);
   projector_.project(cloud, image_, counts);
+  lap_.end("projection");
   if (image_.grid.cells() > kMostCells) {
     return fail(ErrorCode::limit, "the range image would have over 2^24 cells; take larger steps");
   }
   parts.clear();
-  pack(Part::grid, parts,
+  pack(Part::grid, "occupancy", parts,
        [&](ByteWriter& out) { write_grid(image_, surface_options_, unfit_options_, out); });
-  pack(Part::occupancy, parts, [&](ByteWriter& out) { write_occupancy(image_.range_mm, out); });
+  pack(Part::occupancy, "occupancy", parts,
+       [&](ByteWriter& out) { write_occupancy(image_.range_mm, out); });
 
   list_occupied_blocks(image_, surface_options_.block_size, blocks_);
   fitter_.fit(image_, blocks_, surface_options_, surfaces_);
   if (!paint_surfaces(surfaces_, blocks_, surface_options_, image_, fitted_)) {
     return fail(ErrorCode::invalid_argument, "internal: a surface without a range was fitted");
   }
-  pack(Part::surfaces, parts, [&](ByteWriter& out) { write_surfaces(surfaces_, out); });
-  pack(Part::unfit, parts,
+  pack(Part::surfaces, "surface fitting", parts,
+       [&](ByteWriter& out) { write_surfaces(surfaces_, out); });
+  pack(Part::unfit, "SA-DCT", parts,
        [&](ByteWriter& out) { unfit_coder_.write(image_, fitted_, unfit_options_, out); });
   return {};
 }
 
 template <class Write>
-void Encoder::pack(Part part, PartList& parts, Write write) {
+void Encoder::pack(Part part, std::string_view stage, PartList& parts, Write write) {
   raw_.clear();
   ByteWriter out(raw_);
   write(out);
+  lap_.end(stage);
   parts.begin(static_cast<std::uint8_t>(part));
   zstd_.append(raw_, parts.bytes());
+  lap_.end("zstd");
 }
 
 // The same way back.
@@ -149,6 +156,7 @@ Status Decoder::decode(std::span<const std::byte> frame, const FrameHeader& head
   const auto damaged = [](std::string_view what) {
     return fail(ErrorCode::corrupt, "the frame's " + std::string(what) + " cannot be right");
   };
+  lap_ = StageLap(stages_);
   if (Status status = unpack(frame, header, Part::grid); !status) return status;
   if (!read_grid()) return damaged("grid");
 
@@ -159,6 +167,7 @@ Status Decoder::decode(std::span<const std::byte> frame, const FrameHeader& head
       static_cast<std::ptrdiff_t>(header.counts.points_coded)) {
     return damaged("number of points");
   }
+  lap_.end("occupancy");
 
   if (Status status = unpack(frame, header, Part::surfaces); !status) return status;
   ByteReader surfaces(raw_);
@@ -167,12 +176,15 @@ Status Decoder::decode(std::span<const std::byte> frame, const FrameHeader& head
       !paint_surfaces(surfaces_, blocks_, surface_options_, image_, fitted_)) {
     return damaged("list of surfaces");
   }
+  lap_.end("surfaces");
 
   if (Status status = unpack(frame, header, Part::unfit); !status) return status;
   ByteReader unfit(raw_);
   if (!unfit_coder_.read(unfit, fitted_, unfit_options_, image_)) return damaged("unfit image");
+  lap_.end("inverse SA-DCT");
 
   unprojector_.unproject(image_, cloud);
+  lap_.end("projection back");
   return {};
 }
 
@@ -181,7 +193,9 @@ Status Decoder::unpack(std::span<const std::byte> frame, const FrameHeader& head
   if (!packed) return tl::unexpected(packed.error());
   // No part has more than an escaped symbol (6 bytes) a cell, beside a few numbers.
   const std::size_t largest = part == Part::grid ? kLargestGrid : 64 + 8 * image_.grid.cells();
-  return zstd_.decode(*packed, largest, raw_);
+  Status status = zstd_.decode(*packed, largest, raw_);
+  lap_.end("zstd");
+  return status;
 }
 
 bool Decoder::read_grid() {

@@ -12,6 +12,7 @@
 #include "codec/frame_layout.hpp"
 #include "codec/rcpcc/surface.hpp"
 #include "codec/rcpcc/unfit.hpp"
+#include "core/stage_lap.hpp"
 #include "sensor/spherical_grid.hpp"
 #include "sweepcast/cloud.hpp"
 #include "sweepcast/encoder.hpp"
@@ -35,7 +36,7 @@ enum class Part : std::uint8_t {
 class Encoder {
  public:
   /// Options must have passed `check`.
-  Encoder(const RcpccOptions& options, const Crop& crop);
+  Encoder(const RcpccOptions& options, const Crop& crop, StageClock* stages = nullptr);
 
   /// Fills `parts` and `counts`. Errors: limit (more than 2^24 cells between the lowest and the
   /// highest row with a point).
@@ -46,7 +47,7 @@ class Encoder {
 
  private:
   template <class Write>
-  void pack(Part part, PartList& parts, Write write);
+  void pack(Part part, std::string_view stage, PartList& parts, Write write);
 
   SurfaceOptions surface_options_;
   UnfitOptions unfit_options_;
@@ -59,10 +60,14 @@ class Encoder {
   std::vector<Surface> surfaces_;
   std::vector<std::uint8_t> fitted_;
   std::vector<std::byte> raw_;
+  StageClock* stages_;
+  StageLap lap_{nullptr};
 };
 
 class Decoder {
  public:
+  explicit Decoder(StageClock* stages = nullptr) : stages_(stages) {}
+
   /// Fills `cloud` from a frame whose head is parsed. Errors: truncated, corrupt, limit.
   [[nodiscard]] Status decode(std::span<const std::byte> frame, const FrameHeader& header,
                               PointCloud& cloud);
@@ -85,6 +90,8 @@ class Decoder {
   std::vector<std::uint8_t> fitted_;
   std::vector<std::byte> raw_;
   SphericalUnprojector unprojector_;
+  StageClock* stages_;
+  StageLap lap_{nullptr};
 };
 
 }  // namespace sweepcast::rcpcc

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sweepcast/cloud.hpp"
+#include "sweepcast/stages.hpp"
 #include "sweepcast/status.hpp"
 
 namespace sweepcast::lab {
@@ -37,6 +38,11 @@ class Peer {
 
   /// CPU time of other programs that the last call ran and waited for, milliseconds.
   [[nodiscard]] virtual double child_ms() const { return 0.0; }
+
+  /// What the stages of all calls since `forget_stages` took; empty where the codec does not tell.
+  [[nodiscard]] virtual std::span<const StageTime> encode_stages() const { return {}; }
+  [[nodiscard]] virtual std::span<const StageTime> decode_stages() const { return {}; }
+  virtual void forget_stages() {}
 
  private:
   std::string codec_;

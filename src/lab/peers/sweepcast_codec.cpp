@@ -5,13 +5,19 @@
 namespace sweepcast::lab {
 namespace {
 
+struct Clocks {
+  StageClock encode, decode;
+};
+
 class SweepcastPeer : public Peer {
  public:
-  SweepcastPeer(std::string codec, std::string setting, Encoder encoder,
-                const DecoderOptions& decoder)
+  /// The clocks are those that the encoder and the decoder were given.
+  SweepcastPeer(std::string codec, std::string setting, Encoder encoder, Decoder decoder,
+                std::unique_ptr<Clocks> clocks)
       : Peer(std::move(codec), std::move(setting)),
+        clocks_(std::move(clocks)),
         encoder_(std::move(encoder)),
-        decoder_(decoder) {}
+        decoder_(std::move(decoder)) {}
 
   Result<std::span<const std::byte>> encode(const PointCloud& cloud) override {
     return encoder_.encode(cloud, SweepInfo{});
@@ -21,7 +27,15 @@ class SweepcastPeer : public Peer {
     return decoder_.decode(bytes, cloud);
   }
 
+  std::span<const StageTime> encode_stages() const override { return clocks_->encode.stages(); }
+  std::span<const StageTime> decode_stages() const override { return clocks_->decode.stages(); }
+  void forget_stages() override {
+    clocks_->encode.clear();
+    clocks_->decode.clear();
+  }
+
  private:
+  std::unique_ptr<Clocks> clocks_;
   Encoder encoder_;
   Decoder decoder_;
 };
@@ -35,10 +49,14 @@ Result<std::unique_ptr<Peer>> make_sweepcast_peer(const EncoderOptions& options,
   geometry_only.beam.fields = Fields::xyz;
   geometry_only.beam.keep_order = false;
   geometry_only.beam.lossless = false;
+  auto clocks = std::make_unique<Clocks>();
+  geometry_only.stages = &clocks->encode;
+  DecoderOptions decoding = decoder;
+  decoding.stages = &clocks->decode;
   auto encoder = Encoder::create(geometry_only);
   if (!encoder) return tl::unexpected(std::move(encoder.error()));
   return std::make_unique<SweepcastPeer>(std::string(name(options.codec)), std::move(setting),
-                                         std::move(*encoder), decoder);
+                                         std::move(*encoder), Decoder(decoding), std::move(clocks));
 }
 
 }  // namespace sweepcast::lab
