@@ -1,0 +1,41 @@
+// Debian's Chromium, without a screen and with WebGL in software.
+import { existsSync } from 'node:fs';
+import { chromium } from 'playwright-core';
+
+const kChromium = process.env.CHROMIUM ?? '/usr/bin/chromium';
+const kFlags = [
+  '--headless=new', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
+  '--disable-component-update', '--disable-sync', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
+];
+
+export async function launch() {
+  if (!existsSync(kChromium)) throw new Error(`${kChromium} is missing; apt-get install chromium, or set CHROMIUM`);
+  return chromium.launch({ executablePath: kChromium, args: kFlags });
+}
+
+/**
+ * Opens the page. What it complains about, and requests to other hosts, gather in `complaints`;
+ * `ignore` names what a test provokes.
+ */
+export async function open(browser, url, { width = 1280, height = 800, scheme = 'dark', ignore = null } = {}) {
+  const context = await browser.newContext({ viewport: { width, height }, colorScheme: scheme, reducedMotion: 'reduce' });
+  const page = await context.newPage();
+  const complaints = [];
+  const note = (text) => {
+    if (!ignore?.test(text)) complaints.push(text);
+  };
+  page.on('console', (message) => {
+    if (message.type() === 'error' || message.type() === 'warning') note(message.text());
+  });
+  page.on('pageerror', (error) => note(String(error)));
+  page.on('request', (request) => {
+    if (!request.url().startsWith(new URL(url).origin) && !request.url().startsWith('blob:')) note(`asked for ${request.url()}`);
+  });
+  await page.goto(url);
+  return { page, complaints, close: () => context.close() };
+}
+
+/** Waits until a sweep is on the screen. */
+export async function waitForSweep(page) {
+  await page.waitForFunction(() => document.getElementById('fact-points').textContent !== '–', null, { timeout: 60_000 });
+}

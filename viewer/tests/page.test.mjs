@@ -1,0 +1,241 @@
+// The page in a browser, against a server that misbehaves when told to.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { after, before, test } from 'node:test';
+import { launch, open, waitForSweep } from './browser.mjs';
+import { comparePictures } from './pictures.mjs';
+import { makeDrive } from './made_sweeps.mjs';
+import { MockServer } from './mock_server.mjs';
+import { readSweepFile } from './sweep_file.mjs';
+
+const kAxe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
+const kSweeps = 12;
+
+let browser;
+let drive;
+let sweeps;
+before(async () => {
+  drive = makeDrive(kSweeps, '--level', '2');
+  sweeps = readSweepFile(readFileSync(drive.file));
+  browser = await launch();
+});
+after(async () => {
+  await browser?.close();
+  drive?.done();
+});
+
+/** Starts a server, opens the page on it, runs `body`, and asserts that nothing was complained of. */
+async function withPage(body, { mock = {}, view = {} } = {}) {
+  const server = new MockServer(sweeps, mock);
+  await server.start();
+  const opened = await open(browser, `http://127.0.0.1:${server.port}/`, view);
+  try {
+    await waitForSweep(opened.page);
+    await body(opened.page, server);
+    assert.deepEqual(opened.complaints, []);
+  } finally {
+    await opened.close();
+    await server.stop();
+  }
+}
+
+const text = (page, id) => page.textContent(`#${id}`);
+const placeIs = (page, place) => page.waitForFunction((wanted) => document.getElementById('place').textContent === wanted, place);
+const said = (page, pattern) => page.waitForFunction((source) => new RegExp(source).test(document.getElementById('banner').textContent), pattern.source);
+
+test('a file plays, pauses, steps, scrubs and changes speed', () =>
+  withPage(async (page, server) => {
+    assert.equal(await text(page, 'title'), 'drive.sweep');
+    assert.match(await text(page, 'fact-points'), /^\d\d,\d\d\d$/);
+    const first = await text(page, 'place');
+    await page.waitForFunction((was) => document.getElementById('place').textContent !== was, first);
+    await page.click('#play');
+    await page.waitForFunction(() => document.getElementById('play').getAttribute('aria-label') === 'Play');
+    await page.fill('#scrub', '4');
+    await placeIs(page, `5 / ${kSweeps}`);
+    await page.click('#forward');
+    await placeIs(page, `6 / ${kSweeps}`);
+    await page.focus('#view');
+    await page.keyboard.press('ArrowLeft');
+    await placeIs(page, `5 / ${kSweeps}`);
+    await page.keyboard.press('End');
+    await placeIs(page, `${kSweeps} / ${kSweeps}`);
+    await page.keyboard.press('+');
+    await page.waitForFunction(() => document.getElementById('speed').value === '2');
+    const asked = server.received.map((message) => message.kind);
+    for (const kind of ['more', 'pause', 'seek', 'speed']) assert.ok(asked.includes(kind), kind);
+    // Flow control: every sweep that was shown is answered by room for one more, two are ahead.
+    const granted = server.received.filter(({ kind }) => kind === 'more').reduce((sum, { count }) => sum + count, 0);
+    const [client] = server.clients;
+    assert.ok(client.credit >= 1 && client.credit <= 2, `${client.credit} of ${granted} are open`);
+  }));
+
+test('a damaged frame is named, and the next ones are shown', () =>
+  withPage(async (page, server) => {
+    server.damaged.add(3);
+    await said(page, /Sweep 3 \(000003\) is damaged/);
+    await placeIs(page, `6 / ${kSweeps}`);
+  }));
+
+test('notices of the server are shown, and can be put away', () =>
+  withPage(async (page, server) => {
+    server.say({ kind: 'notice', level: 'warning', text: 'the disk is nearly full' });
+    await said(page, /the disk is nearly full/);
+    await page.click('#banner .close');
+    await page.waitForFunction(() => document.getElementById('banner').textContent === '');
+    server.say({ kind: 'a kind of tomorrow', text: 'not understood' });
+    server.say({ kind: 'notice', level: 'error', text: 'still listening' });
+    await said(page, /still listening/);
+  }));
+
+test('a live stream that stops is said to have stopped, until it goes on', () =>
+  withPage(
+    async (page, server) => {
+      assert.equal(await text(page, 'badge'), 'live');
+      assert.ok(await page.isHidden('#transport'));
+      server.silent = true;
+      await said(page, /No sweep has arrived for \d+ s/);
+      server.silent = false;
+      await page.waitForFunction(() => document.getElementById('banner').textContent === '');
+    },
+    { mock: { live: true } },
+  ));
+
+test('after the server was away the page goes on by itself, where it was', async () => {
+  const server = new MockServer(sweeps);
+  await server.start();
+  const opened = await open(browser, `http://127.0.0.1:${server.port}/`, { ignore: /ERR_CONNECTION_REFUSED|WebSocket connection/ });
+  const { page } = opened;
+  let again;
+  try {
+    await waitForSweep(page);
+    await page.click('#play');
+    await page.fill('#scrub', '7');
+    await placeIs(page, `8 / ${kSweeps}`);
+    await server.stop();
+    await said(page, /No connection to the server/);
+    again = new MockServer(sweeps);
+    await again.start(server.port);
+    await page.waitForFunction(() => document.getElementById('banner').textContent === '');
+    await placeIs(page, `8 / ${kSweeps}`);
+    await page.click('#forward');
+    await placeIs(page, `9 / ${kSweeps}`);
+    assert.deepEqual(opened.complaints, []);
+  } finally {
+    await opened.close();
+    await (again ?? server).stop();
+  }
+});
+
+test('errors against the original, and both side by side', () =>
+  withPage(
+    async (page) => {
+      await page.click('#play');
+      await page.selectOption('#mode', 'error');
+      await page.waitForFunction(() => / cm$/.test(document.getElementById('legend-high').textContent));
+      assert.match(await text(page, 'legend-text'), /nearest original/);
+      await page.click('#open-settings');
+      await page.check('#side');
+      await page.waitForSelector('#labels:not([hidden])');
+      assert.match(await text(page, 'labels'), /Original.*Decoded/);
+    },
+    { mock: { original: (i) => drive.original(i) } },
+  ));
+
+test('without an original the error view says so', () =>
+  withPage(async (page) => {
+    await page.selectOption('#mode', 'error');
+    await page.waitForFunction(() => /no original/.test(document.getElementById('legend-text').textContent));
+  }));
+
+test('filled points are counted apart', () =>
+  withPage(async (page) => {
+    await page.click('#play');
+    await page.click('#open-settings');
+    await page.check('#fill');
+    await page.waitForFunction(() => /\+ [\d,]+ filled/.test(document.getElementById('fact-points').textContent));
+    assert.ok(await page.isVisible('#legend-filled'));
+  }));
+
+test('a point that is clicked tells its numbers', () =>
+  withPage(async (page) => {
+    await page.click('#play');
+    await page.keyboard.press('3');
+    const box = await page.locator('#view').boundingBox();
+    let found = false;
+    for (let step = 0; step < 30 && !found; ++step) {
+      await page.mouse.click(box.x + box.width / 2 + 8 * step, box.y + box.height * 0.45);
+      found = await page.isVisible('#pick');
+    }
+    assert.ok(found, 'no point was found');
+    const facts = await page.textContent('#pick dl');
+    const [, x, y, z, range] = facts.match(/\(x\)(-?[\d.]+) m.*\(y\)(-?[\d.]+) m.*\(z\)(-?[\d.]+) mrange([\d.]+) m/);
+    assert.ok(Math.abs(Math.hypot(x, y, z) - range) < 0.002, facts);
+    assert.match(facts, /measured/);
+  }));
+
+test('the dashboard draws a robot, and its level can be chosen', () =>
+  withPage(
+    async (page, server) => {
+      await page.keyboard.press('d');
+      await page.waitForSelector('#charts canvas');
+      await page.waitForFunction(() => /level \d/.test(document.getElementById('robots').textContent));
+      assert.equal(await page.locator('#charts figure').count(), 7);
+      await page.selectOption('#robots select', '3');
+      await page.waitForTimeout(100);
+      assert.deepEqual(server.received.filter(({ kind }) => kind === 'override'), [{ kind: 'override', robot: 'rover', level: 3 }]);
+    },
+    { mock: { live: true } },
+  ));
+
+test('a saved picture is a PNG', () =>
+  withPage(async (page) => {
+    const [download] = await Promise.all([page.waitForEvent('download'), page.keyboard.press('p')]);
+    assert.match(download.suggestedFilename(), /^sweepcast-\d{6}\.png$/);
+    const bytes = readFileSync(await download.path());
+    assert.equal(bytes.toString('latin1', 1, 4), 'PNG');
+    assert.ok(bytes.length > 10_000);
+  }));
+
+for (const scheme of ['dark', 'light']) {
+  for (const [width, height] of [[1280, 800], [390, 844]]) {
+    test(`accessible at ${width} x ${height}, ${scheme}`, () =>
+      withPage(
+        async (page) => {
+          const check = async (where) => {
+            const { violations } = await page.evaluate(`${kAxe}; axe.run()`);
+            assert.deepEqual(violations.map(({ id, nodes }) => `${where}: ${id}: ${nodes[0].html}`), []);
+          };
+          await check('page');
+          await page.click('#open-settings');
+          await check('settings');
+          await page.click('#settings .close');
+          await page.click('#open-dashboard');
+          await page.waitForSelector('#charts canvas');
+          await check('dashboard');
+          await page.click('#dashboard .close');
+          await page.click('#open-help');
+          await check('help');
+          const wide = await page.evaluate(() => document.documentElement.scrollWidth > innerWidth);
+          assert.ok(!wide, 'the page scrolls sideways');
+        },
+        { mock: { live: true }, view: { width, height, scheme } },
+      ));
+  }
+}
+
+test('the picture is the one in the repository, within tolerance', () =>
+  withPage(
+    async (page) => {
+      await page.click('#play');
+      await page.fill('#scrub', '2');
+      await placeIs(page, `3 / ${kSweeps}`);
+      await page.keyboard.press('r');
+      await page.waitForTimeout(300);
+      // The letters on top are the system's, so only the points are compared.
+      await page.evaluate(() => document.querySelectorAll('#stage > :not(canvas)').forEach((element) => (element.style.visibility = 'hidden')));
+      await comparePictures(await page.locator('#view').screenshot(), new URL('pictures/view.png', import.meta.url));
+    },
+    { view: { width: 640, height: 480 } },
+  ));
