@@ -58,7 +58,11 @@ export class Legend {
   }
 
   private lack(mode: Mode): string {
-    if (mode === 'error') return 'There is no original to compare with. Start the server with --original to see errors.';
+    if (mode === 'error') {
+      return this.scene.newest?.message.hasOriginal
+        ? 'Comparing with the original …'
+        : 'The server has no original of this sweep to compare with.';
+    }
     return `These sweeps carry no ${kModes[mode].label.toLowerCase()}.`;
   }
 

@@ -45,7 +45,7 @@ store.watch((settings, changed) => {
   byId('labels').hidden = !settings.sideBySide;
   if (changed.has('stream')) scene.clear();
   const needs = ['fill', 'sideBySide', 'mode'] as const;
-  if (needs.some((key) => changed.has(key))) void pipeline.again();
+  if (needs.some((key) => changed.has(key))) pipeline.again();
 });
 
 listenForKeys(store, {

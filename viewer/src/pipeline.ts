@@ -23,6 +23,8 @@ export class Pipeline {
   private readonly waiting: SweepMessage[] = [];
   private busy = false;
   private last: SweepMessage | null = null;
+  private stale = false; // what is shown of it was made by other settings
+  private drawn = Promise.resolve(); // the sweep before
 
   constructor(
     private readonly decoder: Decoder,
@@ -44,36 +46,40 @@ export class Pipeline {
     this.waiting.length = 0;
   }
 
-  /** Decodes the sweep on the screen again, by other settings. */
-  async again(): Promise<void> {
-    if (!this.last || this.busy || this.waiting.length > 0) return;
-    this.busy = true;
-    await this.handle(this.last);
-    this.busy = false;
+  /** Decodes the sweep on the screen again, by other settings, unless another one comes first. */
+  again(): void {
+    this.stale = this.last !== null;
     void this.work();
   }
 
   private async work(): Promise<void> {
     if (this.busy) return;
     this.busy = true;
-    for (let sweep = this.waiting.shift(); sweep; sweep = this.waiting.shift()) {
-      if (this.events.wants(sweep)) await this.handle(sweep);
-      this.events.done();
+    for (;;) {
+      const sweep = this.waiting.shift();
+      if (!sweep && !(this.stale && this.last)) break;
+      if (!sweep) await this.handle(this.last!, () => undefined);
+      else if (this.events.wants(sweep)) await this.handle(sweep, this.events.done);
+      else this.events.done();
     }
     this.busy = false;
   }
 
-  private async handle(sweep: SweepMessage): Promise<void> {
+  // While a sweep is drawn the worker decodes the next one.
+  private async handle(sweep: SweepMessage, done: () => void): Promise<void> {
     const { mode, sideBySide, fill } = this.settings();
     this.last = sweep;
+    this.stale = false;
     const wanted = (mode === 'error' || sideBySide) && sweep.hasOriginal;
     const original = wanted ? await this.fetchOriginal(sweep) : null;
     try {
       const compare = mode === 'error' && original ? original.xyz : null;
       const decoded = await this.decoder.decode(sweep.frame, { fill, layers: kMostLayers }, compare);
-      await this.events.show({ message: sweep, original, ...decoded });
+      await this.drawn;
+      this.drawn = this.events.show({ message: sweep, original, ...decoded }).then(done);
     } catch (error) {
       this.events.damaged(sweep, error instanceof Error ? error.message : String(error));
+      done();
     }
   }
 

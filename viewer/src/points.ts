@@ -18,7 +18,8 @@ const kVertexShader = `
   attribute float value;
   attribute float filled;
   uniform vec2 range;
-  uniform float size;   // pixels of the screen, near the camera
+  uniform float size;     // pixels of the screen, at 12 m
+  uniform float nearest;  // times as large are points right before the camera
   varying float share;  // of the colour map
   varying float isFilled;
   void main() {
@@ -26,7 +27,7 @@ const kVertexShader = `
     gl_Position = projectionMatrix * seen;
     // A point that is none (NaN) goes where nothing is drawn.
     if (!(dot(position, position) >= 0.0)) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
-    gl_PointSize = size * clamp(14.0 / max(-seen.z, 0.1), 0.75, 2.5) * (filled > 0.5 ? 0.75 : 1.0);
+    gl_PointSize = size * clamp(12.0 / max(-seen.z, 0.1), 0.8, nearest) * (filled > 0.5 ? 0.75 : 1.0);
     share = clamp((value - range.x) / max(range.y - range.x, 1e-9), 0.0, 1.0);
     isFilled = filled;
   }`;
@@ -48,6 +49,7 @@ export class PointStyle {
     map: { value: new DataTexture(new Uint8Array(kMapEntries * 4), kMapEntries, 1, RGBAFormat) },
     range: { value: new Vector2(0, 1) },
     size: { value: 2 },
+    nearest: { value: 2 },
     filledColour: { value: new Color() },
   };
 

@@ -1,7 +1,8 @@
 // The picture: sweeps, grid and axes, in one pane or two. Drawn when something has changed, never
 // otherwise.
-import { AxesHelper, Color, GridHelper, Group, LineBasicMaterial, Scene, WebGLRenderer, type Material } from 'three';
+import { Color, Group, Scene, WebGLRenderer } from 'three';
 import { CameraRig } from './camera';
+import { Ground, makeAxes } from './ground';
 import { PointsObject, PointStyle } from './points';
 import { rangeOf, scalarsOf } from './scalars';
 import { asCloud, type Shown } from './sweep';
@@ -9,7 +10,6 @@ import type { Settings } from './state';
 import type { Cloud } from './wasm_decoder';
 
 const kGround = { dark: 0x0e1116, light: 0xf4f5f7 };
-const kSensorHeight = 1.73; // where nothing is known: the grid is near the ground of a car's sensor
 
 /** Part of the canvas, in pixels of the page from its top left. */
 export interface Pane {
@@ -34,8 +34,8 @@ export class SweepScene {
   private readonly sweeps: { shown: Shown; points: PointsObject; index: number }[] = []; // newest first
   private readonly original = new PointsObject(this.style);
   private readonly decoded = new Group();
-  private readonly grid = new Group();
-  private readonly axes = new AxesHelper(3);
+  private readonly ground = new Ground();
+  private readonly axes = makeAxes();
   private pending = 0;
   private waiting: (() => void)[] = [];
   private smoothed: [number, number] | null = null;
@@ -49,8 +49,7 @@ export class SweepScene {
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.autoClear = false;
     this.rig = new CameraRig(canvas, () => this.requestDraw());
-    this.scene.add(this.decoded, this.original.object, this.grid, this.axes);
-    this.axes.position.z = 0;
+    this.scene.add(this.decoded, this.original.object, this.ground.object, this.axes);
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement!);
   }
 
@@ -87,13 +86,14 @@ export class SweepScene {
     this.settings = settings;
     const { uniforms } = this.style;
     uniforms.size.value = settings.pointSize * this.renderer.getPixelRatio();
+    uniforms.nearest.value = settings.view === 'first' ? 1 : 2; // at the sensor all points are near
     if (changed.has('map') || changed.has('dark')) this.style.setMap(settings.map, settings.dark);
     if (changed.has('dark')) this.paintGround();
     if (changed.has('view')) this.rig.show(settings.view);
     if (changed.has('mode')) this.smoothed = null;
     if (changed.has('sideBySide')) this.resize();
-    this.grid.visible = settings.grid;
-    this.axes.visible = settings.axes;
+    this.ground.object.visible = settings.grid;
+    this.axes.visible = settings.axes && settings.view !== 'first';
     this.trim();
     this.colour();
     void this.requestDraw();
@@ -185,18 +185,7 @@ export class SweepScene {
   private paintGround(): void {
     const { dark } = this.settings;
     this.renderer.setClearColor(new Color(dark ? kGround.dark : kGround.light));
-    for (const old of this.grid.children as GridHelper[]) {
-      old.geometry.dispose();
-      (old.material as Material).dispose();
-    }
-    this.grid.clear();
-    for (const [step, shade] of [[10, dark ? 0x2b323c : 0xc9ced6], [50, dark ? 0x46505e : 0xa2abb8]] as const) {
-      const grid = new GridHelper(200, 200 / step, shade, shade);
-      grid.rotateX(Math.PI / 2);
-      grid.position.z = -kSensorHeight;
-      (grid.material as LineBasicMaterial).toneMapped = false;
-      this.grid.add(grid);
-    }
+    this.ground.paint(dark);
   }
 
   private resize(): void {

@@ -9,7 +9,7 @@ export interface Settings {
   map: ColourMapName;
   range: [number, number] | null; // of the colours; null: follows the points
   view: View;
-  pointSize: number; // pixels, near the camera
+  pointSize: number; // pixels
   trail: number; // earlier sweeps that stay
   grid: boolean;
   axes: boolean;
@@ -33,6 +33,9 @@ export class Store {
   }
 
   set(change: Partial<Settings>): void {
+    // There is room for one panel.
+    if (change.settings) change = { ...change, dashboard: false };
+    if (change.dashboard) change = { ...change, settings: false };
     const changed = new Set<keyof Settings>();
     for (const key of Object.keys(change) as (keyof Settings)[]) {
       if (this.current[key] !== change[key]) changed.add(key);

@@ -22,6 +22,7 @@ export async function open(browser, url, { width = 1280, height = 800, scheme = 
   const page = await context.newPage();
   const complaints = [];
   const note = (text) => {
+    if (text.includes('GPU stall due to ReadPixels')) return; // a screenshot was taken
     if (!ignore?.test(text)) complaints.push(text);
   };
   page.on('console', (message) => {

@@ -1,9 +1,10 @@
 // A made-up drive: a 32-beam sensor in a street of houses and posts, and a van that comes nearer.
 import { execFileSync } from 'node:child_process';
-import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
+import { readSweepFile } from './sweep_file.mjs';
 
 export const kTool = process.env.SWEEPCAST ?? fileURLToPath(new URL('../../build/release/sweepcast', import.meta.url));
 
@@ -81,4 +82,13 @@ export function makeDrive(count, ...options) {
     original: (i) => readFileSync(join(sweeps, `${String(i).padStart(6, '0')}.bin`)),
     done: () => rmSync(folder, { recursive: true, force: true }),
   };
+}
+
+/** The drive's sweeps as a server sends them: each decodes alone, so each has its sensor's model. */
+export function framesOf(drive, ...options) {
+  return readdirSync(drive.sweeps).sort().map((name) => {
+    const file = join(drive.folder, 'one.sweep');
+    execFileSync(kTool, ['encode', join(drive.sweeps, name), '-o', file, ...options], { stdio: 'pipe' });
+    return readSweepFile(readFileSync(file))[0];
+  });
 }

@@ -5,9 +5,8 @@ import { createRequire } from 'node:module';
 import { after, before, test } from 'node:test';
 import { launch, open, waitForSweep } from './browser.mjs';
 import { comparePictures } from './pictures.mjs';
-import { makeDrive } from './made_sweeps.mjs';
+import { framesOf, makeDrive } from './made_sweeps.mjs';
 import { MockServer } from './mock_server.mjs';
-import { readSweepFile } from './sweep_file.mjs';
 
 const kAxe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 const kSweeps = 12;
@@ -16,8 +15,8 @@ let browser;
 let drive;
 let sweeps;
 before(async () => {
-  drive = makeDrive(kSweeps, '--level', '2');
-  sweeps = readSweepFile(readFileSync(drive.file));
+  drive = makeDrive(kSweeps);
+  sweeps = framesOf(drive, '--level', '3');
   browser = await launch();
 });
 after(async () => {
@@ -133,8 +132,11 @@ test('errors against the original, and both side by side', () =>
     async (page) => {
       await page.click('#play');
       await page.selectOption('#mode', 'error');
-      await page.waitForFunction(() => / cm$/.test(document.getElementById('legend-high').textContent));
-      assert.match(await text(page, 'legend-text'), /nearest original/);
+      await page.waitForFunction(() => /nearest original/.test(document.getElementById('legend-text').textContent));
+      // Level 3's steps are centimetres; nothing would be 0, everything lost 1 m.
+      const [low, high] = [parseFloat(await text(page, 'legend-low')), parseFloat(await text(page, 'legend-high'))];
+      assert.match(await text(page, 'legend-high'), / cm$/);
+      assert.ok(low === 0 && high > 0.1 && high < 60, `${low} to ${high} cm`);
       await page.click('#open-settings');
       await page.check('#side');
       await page.waitForSelector('#labels:not([hidden])');
@@ -146,7 +148,7 @@ test('errors against the original, and both side by side', () =>
 test('without an original the error view says so', () =>
   withPage(async (page) => {
     await page.selectOption('#mode', 'error');
-    await page.waitForFunction(() => /no original/.test(document.getElementById('legend-text').textContent));
+    await page.waitForFunction(() => /has no original/.test(document.getElementById('legend-text').textContent));
   }));
 
 test('filled points are counted apart', () =>
