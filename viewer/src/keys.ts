@@ -61,7 +61,7 @@ export function listenForKeys(store: Store, actions: KeyActions): void {
   const help = byId<HTMLDialogElement>('help');
   const keys = keysOf(store, actions, help);
   byId('keys').replaceChildren(
-    ...keys.flatMap(({ shown, meaning }) => [make('dt', {}, make('kbd', {}, shown)), make('dd', {}, meaning)]),
+    ...keys.map(({ shown, meaning }) => make('div', {}, make('dt', {}, make('kbd', {}, shown)), make('dd', {}, meaning))),
   );
   byId('open-help').addEventListener('click', () => help.showModal());
   help.querySelector('.close')!.addEventListener('click', () => help.close());

@@ -89,7 +89,7 @@ export class Pipeline {
     try {
       const answer = await fetch(url);
       if (!answer.ok) throw new Error(`HTTP ${answer.status}`);
-      const fields = (answer.headers.get('X-Fields') ?? 'x,y,z').split(',').map((field) => field.trim());
+      const fields = (answer.headers.get('X-Fields') ?? 'x y z').trim().split(/[\s,]+/);
       return readOriginal(await answer.arrayBuffer(), fields);
     } catch (error) {
       this.events.lackOriginal(error instanceof Error ? error.message : String(error));

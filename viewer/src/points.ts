@@ -36,10 +36,13 @@ const kFragmentShader = `
   uniform sampler2D map;
   uniform float opacity;
   uniform vec3 filledColour;
+  uniform vec3 plainColour;
+  uniform float plain;
   varying float share;
   varying float isFilled;
   void main() {
     vec3 colour = texture2D(map, vec2((share * 255.0 + 0.5) / 256.0, 0.5)).rgb;
+    if (plain > 0.5) colour = plainColour;
     gl_FragColor = vec4(isFilled > 0.5 ? filledColour : colour, opacity);
   }`;
 
@@ -51,6 +54,7 @@ export class PointStyle {
     size: { value: 2 },
     nearest: { value: 2 },
     filledColour: { value: new Color() },
+    plainColour: { value: new Color() },
   };
 
   constructor() {
@@ -62,7 +66,9 @@ export class PointStyle {
     const texture = this.uniforms.map.value;
     (texture.image.data as Uint8Array).set(colourRow(name, dark));
     texture.needsUpdate = true;
-    this.uniforms.filledColour.value.setRGB(...((dark ? [0.52, 0.54, 0.58] : [0.55, 0.57, 0.6]) as [number, number, number]));
+    const grey = (shade: number) => new Color(shade, shade * 1.03, shade * 1.08);
+    this.uniforms.filledColour.value = grey(dark ? 0.52 : 0.55);
+    this.uniforms.plainColour.value = grey(dark ? 0.8 : 0.3);
   }
 }
 
@@ -74,27 +80,24 @@ export class PointsObject {
     const material = new ShaderMaterial({
       vertexShader: kVertexShader,
       fragmentShader: kFragmentShader,
-      uniforms: { ...style.uniforms, opacity: { value: 1 } },
+      uniforms: { ...style.uniforms, opacity: { value: 1 }, plain: { value: 0 } },
     });
     this.object = new Points(new BufferGeometry(), material);
     this.object.frustumCulled = false;
   }
 
-  /** Shows these points; `xyz` and `values` are copied only to the graphics card. */
-  set(xyz: Float32Array, values: Float32Array, filled: Uint8Array | null): void {
-    const points = values.length;
-    const geometry = this.object.geometry;
-    if (points > this.capacity || points === 0) {
-      this.grow(Math.ceil(points * 1.1));
-    }
+  /** Shows so many points; `setValues` gives them their numbers. Copies what it is given. */
+  set(points: number, xyz: Float32Array, filled: Uint8Array | null): void {
+    if (points > this.capacity || this.capacity === 0) this.grow(Math.ceil(points * 1.1) + 1);
     this.fill('position', xyz);
-    this.fill('value', values);
     this.fill('filled', filled ?? new Uint8Array(points));
-    geometry.setDrawRange(0, points);
+    this.object.geometry.setDrawRange(0, points);
   }
 
-  setValues(values: Float32Array): void {
-    if (values.length <= this.capacity) this.fill('value', values);
+  /** What the points are coloured by; without numbers all are of one colour. */
+  setValues(values: Float32Array | null): void {
+    this.object.material.uniforms['plain']!.value = values ? 0 : 1;
+    if (values) this.fill('value', values);
   }
 
   /** Older sweeps fade; those that do not are drawn without blending. */

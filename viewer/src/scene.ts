@@ -4,7 +4,7 @@ import { Color, Group, Scene, WebGLRenderer } from 'three';
 import { CameraRig } from './camera';
 import { Ground, makeAxes } from './ground';
 import { PointsObject, PointStyle } from './points';
-import { rangeOf, scalarsOf } from './scalars';
+import { rangeOf, scalarsOf, type Mode } from './scalars';
 import { asCloud, type Shown } from './sweep';
 import type { Settings } from './state';
 import type { Cloud } from './wasm_decoder';
@@ -20,6 +20,13 @@ export interface Pane {
   original: boolean;
 }
 
+/** A sweep on the graphics card, and which of its quantities is there. */
+interface Layer {
+  shown: Shown;
+  points: PointsObject;
+  mode: Mode | null;
+}
+
 export class SweepScene {
   readonly rig: CameraRig;
   /** The range of colours in use. */
@@ -31,7 +38,7 @@ export class SweepScene {
   private readonly renderer: WebGLRenderer;
   private readonly scene = new Scene();
   private readonly style = new PointStyle();
-  private readonly sweeps: { shown: Shown; points: PointsObject; index: number }[] = []; // newest first
+  private readonly sweeps: Layer[] = []; // newest first
   private readonly original = new PointsObject(this.style);
   private readonly decoded = new Group();
   private readonly ground = new Ground();
@@ -65,19 +72,17 @@ export class SweepScene {
     const spare = same ? this.sweeps.shift() : this.sweeps.length >= keep ? this.sweeps.pop() : undefined;
     const points = spare?.points ?? new PointsObject(this.style);
     if (!spare) this.decoded.add(points.object);
-    this.sweeps.unshift({ shown: sweep, points, index: sweep.message.index });
+    this.sweeps.unshift({ shown: sweep, points, mode: null });
     this.trim();
-    points.set(sweep.cloud.xyz, new Float32Array(sweep.cloud.points), sweep.cloud.filled);
-    if (sweep.original) {
-      this.original.set(sweep.original.xyz, new Float32Array(sweep.original.points), null);
-    }
+    points.set(sweep.cloud.points, sweep.cloud.xyz, sweep.cloud.filled);
+    if (sweep.original) this.original.set(sweep.original.points, sweep.original.xyz, null);
     this.colour();
     return this.requestDraw();
   }
 
   /** Takes all sweeps away. */
   clear(): void {
-    for (const sweep of this.sweeps.splice(0)) this.drop(sweep.points);
+    for (const { points } of this.sweeps.splice(0)) this.drop(points);
     this.smoothed = null;
     void this.requestDraw();
   }
@@ -144,18 +149,20 @@ export class SweepScene {
     if (!newest) return;
     const { mode, range } = this.settings;
     const sweepS = 1 / this.rateHz;
-    this.sweeps.forEach(({ shown, points, index }, k) => {
-      const age = Math.max(0, newest.message.index - index) * sweepS;
-      const values = scalarsOf(shown, mode, age);
+    this.sweeps.forEach((layer, k) => {
+      layer.points.setOpacity(k === 0 ? 1 : 0.55 * (1 - k / (this.settings.trail + 1)));
+      if (layer.mode === mode && mode !== 'age') return; // what else a point has stays as it is
+      const age = Math.max(0, newest.message.index - layer.shown.message.index) * sweepS;
+      const values = scalarsOf(layer.shown, mode, age);
       if (k === 0) this.hasValues = values !== null;
       if (k === 0 && values) this.follow(rangeOf(values, mode));
-      points.setValues(values ?? new Float32Array(shown.cloud.points));
-      points.setOpacity(k === 0 ? 1 : 0.55 * (1 - k / (this.settings.trail + 1)));
+      layer.points.setValues(values);
+      layer.mode = mode;
     });
     if (newest.original) {
       const cloud = asCloud(newest.original, newest.cloud);
       const values = scalarsOf({ ...newest, cloud, errors: null }, mode, 0);
-      this.original.setValues(values ?? new Float32Array(cloud.points).fill(NaN));
+      this.original.setValues(values);
     }
     this.range = range ?? this.smoothed ?? [0, 1];
     this.style.uniforms.range.value.set(...this.range);
@@ -174,7 +181,7 @@ export class SweepScene {
   }
 
   private trim(): void {
-    for (const sweep of this.sweeps.splice(this.settings.trail + 1)) this.drop(sweep.points);
+    for (const { points } of this.sweeps.splice(this.settings.trail + 1)) this.drop(points);
   }
 
   private drop(points: PointsObject): void {

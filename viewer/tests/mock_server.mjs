@@ -65,7 +65,7 @@ export class MockServer {
     const wanted = path.match(/^\/original\/(\d+)$/);
     if (wanted) {
       const bytes = this.original?.(Number(wanted[1]));
-      response.writeHead(bytes ? 200 : 404, { 'X-Fields': 'x,y,z,intensity' }).end(bytes ?? '');
+      response.writeHead(bytes ? 200 : 404, { 'X-Fields': 'x y z intensity' }).end(bytes ?? '');
       return;
     }
     const file = join(kPage, normalize(path === '/' ? '/index.html' : path));
