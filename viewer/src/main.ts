@@ -29,7 +29,7 @@ let greeted = false; // by the connection at hand
 let lastArrival = performance.now();
 const arrivals: number[] = []; // of the last seconds, for the rate
 
-const scene = new SweepScene(canvas, store.get());
+const scene = makeScene();
 const connection = new Connection({ onOpen, onLost, onMessage, onSweep });
 const send = connection.send.bind(connection);
 const transport = new Transport(send);
@@ -63,6 +63,16 @@ byId('pick').querySelector('.close')!.addEventListener('click', () => picker.clo
 canvas.addEventListener('pointerdown', () => (byId('hint').hidden = true), { once: true });
 setInterval(everySecond, 1000);
 connection.open();
+
+function makeScene(): SweepScene {
+  try {
+    return new SweepScene(canvas, store.get());
+  } catch (error) {
+    byId('waiting').hidden = true;
+    banner.say('page', 'error', 'This browser cannot draw in three dimensions: it offers no WebGL. Turn on hardware acceleration, or use another browser.');
+    throw error;
+  }
+}
 
 function onOpen(): void {
   greeted = false;
@@ -171,7 +181,9 @@ function everySecond(): void {
   }
   const silence = (now - lastArrival) / 1000;
   if (hello?.source === 'live' && hello.streams.length > 0 && silence > kSilenceS && !document.hidden) {
-    banner.say('stall', 'warning', `No sweep has arrived for ${Math.round(silence)} s. The robot may have stopped, or its link is down; the last sweep is shown.`);
+// A number that changes every second would be read aloud every second.
+    const over = silence < 10 ? kSilenceS : Math.floor(silence / 10) * 10;
+    banner.say('stall', 'warning', `No sweep has arrived for over ${over} s. The robot may have stopped, or its link is down; the last sweep is shown.`);
   }
 }
 

@@ -94,7 +94,7 @@ test('a live stream that stops is said to have stopped, until it goes on', () =>
       assert.equal(await text(page, 'badge'), 'live');
       assert.ok(await page.isHidden('#transport'));
       server.silent = true;
-      await said(page, /No sweep has arrived for \d+ s/);
+      await said(page, /No sweep has arrived for over 3 s/);
       server.silent = false;
       await page.waitForFunction(() => document.getElementById('banner').textContent === '');
     },
@@ -124,6 +124,21 @@ test('after the server was away the page goes on by itself, where it was', async
   } finally {
     await opened.close();
     await (again ?? server).stop();
+  }
+});
+
+test('without WebGL the page says what to do', async () => {
+  const server = new MockServer(sweeps);
+  await server.start();
+  const context = await browser.newContext();
+  try {
+    const page = await context.newPage();
+    await page.addInitScript(() => (HTMLCanvasElement.prototype.getContext = () => null));
+    await page.goto(`http://127.0.0.1:${server.port}/`);
+    await said(page, /offers no WebGL/);
+  } finally {
+    await context.close();
+    await server.stop();
   }
 });
 
