@@ -72,9 +72,10 @@ export function listenForKeys(store: Store, actions: KeyActions): void {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     if (event.key === 'Escape') actions.escape();
     const target = event.target as HTMLElement;
-    const typing = target.matches('input:not([type=checkbox]), select, textarea');
-    const pressing = target.matches('button, input, summary') && (event.key === ' ' || event.key === 'Enter');
-    if (typing || pressing || (help.open && event.key !== '?')) return;
+    const typing = target.matches('input[type=number], select');
+    const sliding = target.matches('input[type=range]') && /^(Arrow|Home|End|Page)/.test(event.key);
+    const pressing = target.matches('button, input[type=checkbox]') && (event.key === ' ' || event.key === 'Enter');
+    if (typing || sliding || pressing || (help.open && event.key !== '?')) return;
     const wanted = event.key.length === 1 ? event.key.toLowerCase() : event.key;
     const found = keys.find((key) => key.keys.includes(wanted));
     if (!found) return;

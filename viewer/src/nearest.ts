@@ -4,7 +4,7 @@
 /** Distances beyond it are given as it, metres. */
 export const kLargestError = 1;
 
-const kFirstCube = 0.125; // metres; then four times as much, up to the largest error
+const kFirstReach = 0.0625; // metres; then four times as much, up to the largest error
 
 /** Original points, in cubes of one size, found by hash. */
 class CubeGrid {
@@ -14,7 +14,7 @@ class CubeGrid {
 
   constructor(
     private readonly xyz: Float32Array,
-    private readonly cube: number,
+    private readonly cube: number, // its edge, metres
   ) {
     const points = xyz.length / 3;
     let buckets = 1024;
@@ -40,26 +40,32 @@ class CubeGrid {
     return (Math.imul(x, 73856093) ^ Math.imul(y, 19349663) ^ Math.imul(z, 83492791)) & this.mask;
   }
 
-  /** The squared distance to the nearest point of the 27 cubes around; infinite without one. */
+  /**
+   * The squared distance to the nearest point of the eight cubes around, which hold all points
+   * within half a cube's edge; infinite without one.
+   */
   nearest(x: number, y: number, z: number): number {
+    const { xyz, begin, order } = this;
+    const [cx, cy, cz] = [this.first(x), this.first(y), this.first(z)];
     let least = Infinity;
-    const [cx, cy, cz] = [this.place(x), this.place(y), this.place(z)];
-    for (let dx = -1; dx <= 1; ++dx) {
-      for (let dy = -1; dy <= 1; ++dy) {
-        for (let dz = -1; dz <= 1; ++dz) {
-          const bucket = this.bucketOf(cx + dx, cy + dy, cz + dz);
-          for (let at = this.begin[bucket]!; at < this.begin[bucket + 1]!; ++at) {
-            const i = this.order[at]! * 3;
-            const ex = this.xyz[i]! - x;
-            const ey = this.xyz[i + 1]! - y;
-            const ez = this.xyz[i + 2]! - z;
-            const squared = ex * ex + ey * ey + ez * ez;
-            if (squared < least) least = squared;
-          }
-        }
+    for (let corner = 0; corner < 8; ++corner) {
+      const bucket = this.bucketOf(cx + (corner & 1), cy + ((corner >> 1) & 1), cz + (corner >> 2));
+      const end = begin[bucket + 1]!;
+      for (let at = begin[bucket]!; at < end; ++at) {
+        const i = order[at]! * 3;
+        const ex = xyz[i]! - x;
+        const ey = xyz[i + 1]! - y;
+        const ez = xyz[i + 2]! - z;
+        const squared = ex * ex + ey * ey + ez * ez;
+        if (squared < least) least = squared;
       }
     }
     return least;
+  }
+
+  // Of the two cubes along an axis that are nearest to `value`, the lower one.
+  private first(value: number): number {
+    return Math.floor(value / this.cube - 0.5);
   }
 }
 
@@ -67,17 +73,15 @@ class CubeGrid {
 export function errorsAgainst(decoded: Float32Array, original: Float32Array): Float32Array {
   const errors = new Float32Array(decoded.length / 3).fill(kLargestError);
   if (original.length === 0) return errors.fill(NaN);
-  for (let cube = kFirstCube, first = true; cube < 4 * kLargestError; cube *= 4, first = false) {
-    const grid = new CubeGrid(original, Math.min(cube, kLargestError));
-    const sure = Math.min(cube, kLargestError); // what lies nearer is in the 27 cubes for certain
-    let missed = 0;
-    for (let i = 0; i < errors.length; ++i) {
-      if (!first && errors[i]! < kLargestError) continue;
+  let open = Uint32Array.from(errors.keys()); // points whose nearest is not known yet
+  for (let reach = kFirstReach; reach <= kLargestError && open.length > 0; reach *= 4) {
+    const grid = new CubeGrid(original, 2 * reach);
+    open = open.filter((i) => {
       const squared = grid.nearest(decoded[3 * i]!, decoded[3 * i + 1]!, decoded[3 * i + 2]!);
-      if (squared <= sure * sure) errors[i] = Math.sqrt(squared);
-      else ++missed;
-    }
-    if (missed === 0) break;
+      if (squared > reach * reach) return true; // another one outside the cubes may be nearer
+      errors[i] = Math.sqrt(squared);
+      return false;
+    });
   }
   return errors;
 }

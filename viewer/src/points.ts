@@ -68,7 +68,7 @@ export class PointStyle {
     texture.needsUpdate = true;
     const grey = (shade: number) => new Color(shade, shade * 1.03, shade * 1.08);
     this.uniforms.filledColour.value = grey(dark ? 0.52 : 0.55);
-    this.uniforms.plainColour.value = grey(dark ? 0.8 : 0.3);
+    this.uniforms.plainColour.value = grey(dark ? 0.7 : 0.35);
   }
 }
 

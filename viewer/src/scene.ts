@@ -68,6 +68,8 @@ export class SweepScene {
   /** Shows `sweep` as the newest; resolves once it has been drawn. */
   show(sweep: Shown): Promise<void> {
     const same = this.newest?.message.index === sweep.message.index && this.newest.message.stream === sweep.message.stream;
+    const follows = sweep.message.index - (this.newest?.message.index ?? sweep.message.index);
+    if (Math.abs(follows) > 3) this.smoothed = null; // elsewhere in the file
     const keep = this.settings.trail + 1;
     const spare = same ? this.sweeps.shift() : this.sweeps.length >= keep ? this.sweeps.pop() : undefined;
     const points = spare?.points ?? new PointsObject(this.style);
@@ -91,7 +93,7 @@ export class SweepScene {
     this.settings = settings;
     const { uniforms } = this.style;
     uniforms.size.value = settings.pointSize * this.renderer.getPixelRatio();
-    uniforms.nearest.value = settings.view === 'first' ? 1 : 2; // at the sensor all points are near
+    uniforms.nearest.value = settings.view === 'first' ? 1.4 : 2; // at the sensor all points are near
     if (changed.has('map') || changed.has('dark')) this.style.setMap(settings.map, settings.dark);
     if (changed.has('dark')) this.paintGround();
     if (changed.has('view')) this.rig.show(settings.view);

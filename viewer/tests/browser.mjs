@@ -19,6 +19,7 @@ export async function launch() {
  */
 export async function open(browser, url, { width = 1280, height = 800, scheme = 'dark', ignore = null } = {}) {
   const context = await browser.newContext({ viewport: { width, height }, colorScheme: scheme, reducedMotion: 'reduce' });
+  context.setDefaultTimeout(60_000); // on a busy machine WebGL in software takes its time
   const page = await context.newPage();
   const complaints = [];
   const note = (text) => {
@@ -38,5 +39,5 @@ export async function open(browser, url, { width = 1280, height = 800, scheme = 
 
 /** Waits until a sweep is on the screen. */
 export async function waitForSweep(page) {
-  await page.waitForFunction(() => document.getElementById('fact-points').textContent !== '–', null, { timeout: 60_000 });
+  await page.waitForFunction(() => document.getElementById('fact-points').textContent !== '–');
 }

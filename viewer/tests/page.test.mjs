@@ -200,8 +200,9 @@ test('the dashboard draws a robot, and its level can be chosen', () =>
       await page.waitForFunction(() => /level \d/.test(document.getElementById('robots').textContent));
       assert.equal(await page.locator('#charts figure').count(), 7);
       await page.selectOption('#robots select', '3');
-      await page.waitForTimeout(100);
-      assert.deepEqual(server.received.filter(({ kind }) => kind === 'override'), [{ kind: 'override', robot: 'rover', level: 3 }]);
+      const wishes = () => server.received.filter(({ kind }) => kind === 'override');
+      while (wishes().length === 0) await page.evaluate(() => new Promise(requestAnimationFrame));
+      assert.deepEqual(wishes(), [{ kind: 'override', robot: 'rover', level: 3 }]);
     },
     { mock: { live: true } },
   ));
@@ -248,8 +249,14 @@ test('the picture is the one in the repository, within tolerance', () =>
       await page.click('#play');
       await page.fill('#scrub', '2');
       await placeIs(page, `3 / ${kSweeps}`);
-      await page.keyboard.press('r');
-      await page.waitForTimeout(300);
+      await page.keyboard.press('s');
+      await page.uncheck('#range-auto');
+      await page.fill('#range-low', '-2');
+      await page.fill('#range-high', '6');
+      await page.click('#settings .close');
+      await page.click('#views [data-view=orbit]');
+      await page.waitForFunction(() => document.getElementById('legend-high').textContent === '6 m');
+      for (let frame = 0; frame < 3; ++frame) await page.evaluate(() => new Promise(requestAnimationFrame));
       // The letters on top are the system's, so only the points are compared.
       await page.evaluate(() => document.querySelectorAll('#stage > :not(canvas)').forEach((element) => (element.style.visibility = 'hidden')));
       await comparePictures(await page.locator('#view').screenshot(), new URL('pictures/view.png', import.meta.url));

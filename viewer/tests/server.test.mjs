@@ -24,8 +24,8 @@ after(async () => {
 
 const text = (page, id) => page.textContent(`#${id}`);
 const placeIs = (page, place) => page.waitForFunction((wanted) => document.getElementById('place').textContent === wanted, place);
-const said = (page, pattern) => page.waitForFunction((source) => new RegExp(source).test(document.getElementById('banner').textContent), pattern.source, { timeout: 60_000 });
-const quiet = (page) => page.waitForFunction(() => document.getElementById('banner').textContent === '', null, { timeout: 60_000 });
+const said = (page, pattern) => page.waitForFunction((source) => new RegExp(source).test(document.getElementById('banner').textContent), pattern.source);
+const quiet = (page) => page.waitForFunction(() => document.getElementById('banner').textContent === '');
 
 test('the program has the page that was built', async () => {
   const view = await startView(await freePort(), drive.file);
@@ -111,7 +111,7 @@ test('a live stream through the emulator: shown, counted, missed when it stops, 
     const before = await text(page, 'robots');
     sender = send();
     await page.waitForFunction((was) => document.getElementById('robots').textContent !== was, before);
-    await page.waitForFunction(() => !/No sweep has arrived/.test(document.getElementById('banner').textContent), null, { timeout: 60_000 });
+    await page.waitForFunction(() => !/No sweep has arrived/.test(document.getElementById('banner').textContent));
     assert.deepEqual(complaints, []);
   } catch (error) {
     error.message += programs.map(({ child, said: words }) => `\n${child.spawnargs[1]}: ${words.slice(-500)}`).join('');
