@@ -76,15 +76,11 @@ export class LocalMeter {
   private bytes = 0;
   private sweeps = 0;
   private total = 0;
-  private ageMs: number | null = null;
 
-  constructor(private readonly isLive: () => boolean) {}
-
-  add(bytes: number, ageMs: number): void {
+  add(bytes: number): void {
     this.bytes += bytes;
     this.sweeps += 1;
     this.total += 1;
-    this.ageMs = this.isLive() ? ageMs : null;
   }
 
   /** The status of the last second. */
@@ -96,7 +92,7 @@ export class LocalMeter {
       bytes_per_sweep: this.sweeps > 0 ? this.bytes / this.sweeps : null,
       level: null,
       queue_frames: null,
-      age_ms: this.ageMs,
+      age_ms: null,
       drops: null,
       qoe: null,
       sweeps: this.total,

@@ -35,7 +35,7 @@ const send = connection.send.bind(connection);
 const transport = new Transport(send);
 const controls = new Controls(store);
 const dashboard = new Dashboard(store, history, send);
-const meter = new LocalMeter(() => hello?.source === 'live');
+const meter = new LocalMeter();
 const picker = new Picker(scene, canvas, byId('pick'), byId('pick-ring'));
 const pipeline = new Pipeline(new Decoder(), () => store.get(), { wants, show, damaged, lackOriginal, done: () => connection.grant() });
 new Legend(store, scene);
@@ -129,7 +129,7 @@ function begin(message: Hello): void {
 function onSweep(sweep: SweepMessage): void {
   lastArrival = performance.now();
   banner.clear('stall');
-  meter.add(sweep.frame.length, sweep.ageMs);
+  meter.add(sweep.frame.length);
   pipeline.add(sweep);
 }
 

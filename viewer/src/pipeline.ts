@@ -22,6 +22,7 @@ export interface PipelineEvents {
 export class Pipeline {
   private readonly waiting: SweepMessage[] = [];
   private busy = false;
+  private connections = 0; // what came by one is not asked for again by the next
   private last: SweepMessage | null = null;
   private stale = false; // what is shown of it was made by other settings
   private drawn = Promise.resolve(); // the sweep before
@@ -44,6 +45,7 @@ export class Pipeline {
   /** Forgets what has not been shown: the connection it came by is gone. */
   clear(): void {
     this.waiting.length = 0;
+    this.connections += 1;
   }
 
   /** Decodes the sweep on the screen again, by other settings, unless another one comes first. */
@@ -57,10 +59,14 @@ export class Pipeline {
     this.busy = true;
     for (;;) {
       const sweep = this.waiting.shift();
+      const connection = this.connections;
+      const done = () => {
+        if (connection === this.connections) this.events.done();
+      };
       if (!sweep && !(this.stale && this.last)) break;
       if (!sweep) await this.handle(this.last!, () => undefined);
-      else if (this.events.wants(sweep)) await this.handle(sweep, this.events.done);
-      else this.events.done();
+      else if (this.events.wants(sweep)) await this.handle(sweep, done);
+      else done();
     }
     this.busy = false;
   }
