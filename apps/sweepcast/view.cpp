@@ -63,6 +63,10 @@ Result<std::unique_ptr<view::Recording>> open_recording(const ViewOptions& optio
   }
   auto clouds = collect_clouds({options.input});
   if (!clouds) return tl::unexpected(clouds.error());
+  if (!options.originals.empty()) {
+    return fail(ErrorCode::invalid_argument,
+                options.input + ": clouds are their own originals; leave --original out");
+  }
   print_note(fmt::format("{}: clouds, encoded as they are shown, within {} m; see --max-error",
                          options.input, options.max_error_m));
   EncoderOptions encoder;

@@ -107,18 +107,18 @@ Bytes point_cloud_descriptors() {
   return set;
 }
 
-std::string base64(std::span<const std::byte> in) {
+std::string base64(std::span<const std::byte> bytes) {
   constexpr std::string_view kDigits =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string out;
-  out.reserve((in.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < in.size(); i += 3) {
+  out.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
     std::uint32_t bits = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-      bits = bits << 8 | (i + k < in.size() ? std::to_integer<std::uint32_t>(in[i + k]) : 0U);
+      bits = bits << 8 | (i + k < bytes.size() ? std::to_integer<std::uint32_t>(bytes[i + k]) : 0U);
     }
     for (std::size_t k = 0; k < 4; ++k) {
-      out.push_back(i + k > in.size() ? '=' : kDigits[bits >> (18 - 6 * k) & 63]);
+      out.push_back(i + k > bytes.size() ? '=' : kDigits[bits >> (18 - 6 * k) & 63]);
     }
   }
   return out;

@@ -71,16 +71,16 @@ FoxgloveClient::FoxgloveClient(const Show& show, Recording* recording, FoxgloveC
   if (recording != nullptr) player_.emplace(recording->size(), show.rate_hz, now);
 }
 
-Status FoxgloveClient::take(std::string_view text, bool is_text, Clock::time_point /*now*/) {
+Status FoxgloveClient::take(std::string_view message, bool is_text, Clock::time_point /*now*/) {
   if (!is_text) return {};  // what clients publish and call is not for us
-  const Json message = Json::parse(text, nullptr, false);
-  const auto named = message.is_object() ? message.find("op") : message.end();
-  if (!message.is_object() || named == message.end() || !named->is_string()) {
+  const Json json = Json::parse(message, nullptr, false);
+  const auto named = json.is_object() ? json.find("op") : json.end();
+  if (!json.is_object() || named == json.end() || !named->is_string()) {
     return fail(ErrorCode::invalid_argument, "a message is no JSON object with an \"op\"");
   }
   const auto list = [&](const char* key) {
-    const auto found = message.find(key);
-    return found != message.end() && found->is_array() ? *found : Json::array();
+    const auto found = json.find(key);
+    return found != json.end() && found->is_array() ? *found : Json::array();
   };
   const auto op = named->get<std::string>();
   if (op == "subscribe") {

@@ -1,5 +1,9 @@
 #include "view/server.hpp"
 
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+
+#include <algorithm>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -20,8 +24,9 @@ using boost::system::error_code;
 using tcp = asio::ip::tcp;
 
 constexpr std::chrono::seconds kTick{1};
-/// Bytes that wait in the system: what waits there is old when it arrives.
-constexpr int kSendBuffer = 1 << 18;
+/// Bytes that may wait in the system to be sent: what waits there is old when it arrives.
+constexpr int kMostUnsent = 1 << 17;
+constexpr double kMostAge_s = 1e6;
 
 }  // namespace
 
@@ -84,7 +89,8 @@ void Server::State::accept() {
     if (error) return;
     error_code ignored;
     socket.set_option(tcp::no_delay(true), ignored);
-    socket.set_option(asio::socket_base::send_buffer_size(kSendBuffer), ignored);
+    ::setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kMostUnsent,
+                 sizeof(kMostUnsent));
     if (auto place = hub.take_place()) serve_http(std::move(socket), hub, std::move(place));
   });
 }
@@ -176,7 +182,7 @@ std::uint16_t Server::port() const noexcept {
 
 void Server::publish(const LiveSweep& sweep) {
   const auto now = Clock::now();
-  const std::chrono::duration<double> age(sweep.age_s);
+  const std::chrono::duration<double> age(std::clamp(sweep.age_s, 0.0, kMostAge_s));
   FrameHeader header;
   if (!parse_frame_header(sweep.frame, header)) return;
   Arrival arrival{std::string(sweep.robot),

@@ -27,7 +27,7 @@ class ViewTool : public ToolTest {
 TEST_F(ViewTool, ShowsARecordingUntilItIsToldToStop) {
   make_recording(3);
   const Outcome outcome =
-      shell(viewing("room.sweep --original sweeps") + get("/healthz") + get("/original/2 ") + kEnd);
+      shell(viewing("room.sweep --original sweeps") + get("/healthz") + get("/original/2") + kEnd);
   EXPECT_EQ(outcome.out.substr(0, 15), "HTTP/1.1 200 OK") << outcome.out;
   EXPECT_NE(outcome.out.find("X-Fields: x y z intensity"), std::string::npos);
   EXPECT_NE(outcome.out.find(read("sweeps/000002.bin")), std::string::npos);
@@ -54,6 +54,7 @@ TEST_F(ViewTool, RefusesWhatIsUnsafeOrNotThere) {
   expect_failure(run("view room.sweep --port 0 --token 'a b'"), 1, {"token", "letters"});
   expect_failure(run("view nothing.sweep --port 0"), 1, {"nothing.sweep"});
   expect_failure(run("view room.sweep --port 0 --original nowhere"), 1, {"nowhere"});
+  expect_failure(run("view sweeps --port 0 --original sweeps"), 1, {"sweeps", "--original"});
   expect_failure(run("view room.sweep --port 70000"), 2, {"--port"});
   const Outcome locked = shell(viewing("room.sweep --token s3cret --address 0.0.0.0") + get("/") +
                                get("/?token=s3cret") + kEnd);

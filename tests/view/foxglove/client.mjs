@@ -1,7 +1,7 @@
 // Connects to a server as Foxglove does, with Foxglove's own client, and compares the clouds that
 // come with those in a folder: node client.mjs PORT SUBPROTOCOL FOLDER [TOKEN]
 // FOLDER holds what `sweepcast decode` makes of the recording that is served, as .bin files.
-import { FoxgloveClient } from "@foxglove/ws-protocol";
+import foxglove from "@foxglove/ws-protocol";
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import path from "node:path";
@@ -19,7 +19,7 @@ const seen = new Set();
 
 const query = token === undefined ? "" : `?token=${token}`;
 const socket = new WebSocket(`ws://127.0.0.1:${port}/${query}`, [subprotocol]);
-const client = new FoxgloveClient({ ws: socket });
+const client = new foxglove.FoxgloveClient({ ws: socket });
 const types = new Map();
 
 client.on("error", (error) => {
@@ -47,9 +47,9 @@ client.on("advertise", (channels) => {
 client.on("message", ({ subscriptionId, timestamp, data }) => {
   assert.ok(timestamp > 1_600_000_000_000_000_000n);
   const cloud = types.get(subscriptionId).decode(new Uint8Array(data.buffer, data.byteOffset, data.byteLength));
-  assert.equal(cloud.frameId, "room");
+  assert.equal(cloud.frame_id, "room");
   assert.equal(cloud.pose.orientation.w, 1);
-  assert.equal(cloud.pointStride, 16);
+  assert.equal(cloud.point_stride, 16);
   assert.deepEqual(
     cloud.fields.map(({ name, offset, type }) => [name, offset, type]),
     [
