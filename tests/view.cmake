@@ -1,6 +1,7 @@
 # Tests of the viewer's server.
 sweepcast_test(view/access sweepcast_view)
 sweepcast_test(view/foxglove sweepcast_view nlohmann_json::nlohmann_json)
+sweepcast_test(view/hub sweepcast_view nlohmann_json::nlohmann_json)
 sweepcast_test(view/page_client sweepcast_view nlohmann_json::nlohmann_json)
 sweepcast_test(view/recording sweepcast_view)
 sweepcast_test(view/assets)

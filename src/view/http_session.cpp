@@ -36,7 +36,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   HttpSession(boost::asio::ip::tcp::socket socket, Hub& hub, std::shared_ptr<void> place)
       : place_(std::move(place)),
         stream_(std::move(socket)),
-        buffer_(2 * kMostHeadBytes),
+        buffer_(std::size_t{2} * kMostHeadBytes),
         hub_(hub) {}
 
   void read() {

@@ -53,10 +53,11 @@ Hub::LiveStream* Hub::stream_of(const Arrival& arrival, std::uint8_t& id) {
 }
 
 void Hub::take(Arrival arrival, Clock::time_point now) {
+  FrameHeader header;
+  if (!parse_frame_header(arrival.frame, header)) return;
   auto sweep = std::make_shared<Sweep>();
   LiveStream* stream = stream_of(arrival, sweep->stream);
-  FrameHeader header;
-  if (stream == nullptr || !parse_frame_header(arrival.frame, header)) return;
+  if (stream == nullptr) return;
   if (const auto layers = count_layers(arrival.frame, header)) sweep->layers = *layers;
   sweep->index = stream->count++;
   sweep->name = std::move(arrival.name);

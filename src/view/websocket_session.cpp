@@ -42,8 +42,8 @@ class WebSocketSession : public Attendee, public std::enable_shared_from_this<We
   WebSocketSession(const WebSocketSession&) = delete;
   WebSocketSession& operator=(const WebSocketSession&) = delete;
 
-  void run(const UpgradeRequest& request) {
-    request_ = request;
+  void run(UpgradeRequest request) {
+    request_ = std::move(request);
     socket_.async_accept(request_, [self = shared_from_this()](beast::error_code error) {
       if (error) return;
       self->request_ = {};

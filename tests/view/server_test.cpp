@@ -259,17 +259,11 @@ TEST(ViewServerLive, TellsOfStreamsAndFigures) {
     robot = next_of_kind(client, "status")["robots"].at(0);
   }
   EXPECT_EQ(robot["name"], "rover");
-  EXPECT_EQ(robot["connected"], true);
   EXPECT_EQ(robot["drops"], 2);
   EXPECT_NEAR(robot["age_ms"].get<double>(), 50.0, 1e-6);
   EXPECT_TRUE(robot["level"].is_null());
-  EXPECT_EQ(next_of_kind(client, "notice")["level"], "warning");  // nothing comes any more
-  WebClient late;
-  ASSERT_EQ(late.connect(server.port(), "/live", kPage), 101);
-  late.send(R"({"kind":"more","count":1})");
-  EXPECT_TRUE(next_sweep(late));
-  server.publish({"rover", "roof", "a", *encoder->encode(cloud, {5}), 0.05});
-  EXPECT_EQ(next_of_kind(client, "notice")["level"], "info");
+  client.send(R"({"kind":"more","count":1})");
+  EXPECT_TRUE(next_sweep(client));
 }
 
 }  // namespace
