@@ -42,7 +42,7 @@ if(SWEEPCAST_APPS OR SWEEPCAST_TESTS OR SWEEPCAST_FUZZ)
   if(Boost_FOUND AND EXISTS ${Boost_INCLUDE_DIRS}/boost/beast/version.hpp)
     set(view_found ON)
   endif()
-  sweepcast_component(view "${view_found}" libboost-dev "view, and receive --view")
+  sweepcast_component(view "${view_found}" libboost-dev "the viewer")
 endif()
 
 if(SWEEPCAST_APPS OR SWEEPCAST_TESTS)
