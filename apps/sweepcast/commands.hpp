@@ -17,6 +17,7 @@ void add_calibrate(CLI::App& app, Command& command);
 void add_keygen(CLI::App& app, Command& command);
 void add_send(CLI::App& app, Command& command);
 void add_receive(CLI::App& app, Command& command);
+void add_view(CLI::App& app, Command& command);
 void add_emulate_link(CLI::App& app, Command& command);
 
 /// Lists simulate, bench and ablate in the help; `run_lab` runs them.

@@ -32,6 +32,7 @@ int run_tool(int argc, char** argv) {
   add_keygen(app, command);
   add_send(app, command);
   add_receive(app, command);
+  add_view(app, command);
   add_emulate_link(app, command);
   add_lab(app);
   return run(app, command, argc, argv);

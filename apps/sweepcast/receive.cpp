@@ -11,6 +11,7 @@
 #include "sweepcast/link.hpp"
 #include "sweepcast/live/arrivals.hpp"
 #include "sweepcast/live/metrics.hpp"
+#include "view/server.hpp"
 
 namespace sweepcast::app {
 namespace {
@@ -20,6 +21,8 @@ struct ReceiveOptions {
   std::string keys_file;
   std::string output;
   std::string metrics;
+  std::string view;  ///< [ADDRESS:]PORT; empty: nothing is shown
+  view::ServerOptions viewer;
   bool json = false;
 };
 
@@ -64,6 +67,33 @@ void report(const ReceiverStatus& s, const Arrivals::Figures& f, bool json) {
              s.sweeps_missed, f.bytes);
 }
 
+/// [ADDRESS:]PORT; false where it is neither.
+bool read_address(const std::string& text, std::string& address, std::uint16_t& port) {
+  const std::size_t colon = text.rfind(':');
+  const std::string digits = colon == std::string::npos ? text : text.substr(colon + 1);
+  const bool is_sound = !digits.empty() && digits.size() <= 5 &&
+                        digits.find_first_not_of("0123456789") == std::string::npos &&
+                        std::stoi(digits) <= 65535;
+  if (!is_sound) return false;
+  port = static_cast<std::uint16_t>(std::stoi(digits));
+  if (colon != std::string::npos) address = text.substr(0, colon);
+  return true;
+}
+
+/// Nothing where nobody asked for it.
+Result<std::optional<view::Server>> start_viewer(ReceiveOptions& options) {
+  if (options.view.empty()) return std::nullopt;
+  options.viewer.title = "live";
+  auto server = view::Server::start(options.viewer, nullptr);
+  if (!server) return tl::unexpected(server.error());
+  print_note("viewing at " + server->url());
+  return std::move(*server);
+}
+
+void show(view::Server& server, const ReceivedSweep& sweep) {
+  server.publish({sweep.robot, sweep.sensor, sweep.name, sweep.frame, sweep.age_s});
+}
+
 Status receive(ReceiveOptions& options) {
   stop_on_signals();  // before anything is written
   auto keys = read_link_keys(options.keys_file);
@@ -72,7 +102,12 @@ Status receive(ReceiveOptions& options) {
   auto store = SweepStore::open(options.output);
   if (!store) return tl::unexpected(store.error());
   Arrivals arrivals(std::move(*store));
-  options.receiver.on_sweep = [&](const ReceivedSweep& sweep) { arrivals.take(sweep); };
+  auto viewer = start_viewer(options);
+  if (!viewer) return tl::unexpected(viewer.error());
+  options.receiver.on_sweep = [&](const ReceivedSweep& sweep) {
+    arrivals.take(sweep);
+    if (*viewer) show(**viewer, sweep);
+  };
   auto started = Receiver::start(options.receiver);
   if (!started) return tl::unexpected(started.error());
   std::optional<Receiver> receiver = std::move(*started);
@@ -112,14 +147,9 @@ void add_receive(CLI::App& app, Command& command) {
   sub->add_option_function<std::string>(
          "--listen",
          [options](const std::string& text) {
-           const std::size_t colon = text.rfind(':');
-           const std::string digits = colon == std::string::npos ? text : text.substr(colon + 1);
-           const bool sound = !digits.empty() && digits.size() <= 5 &&
-                              digits.find_first_not_of("0123456789") == std::string::npos &&
-                              std::stoi(digits) <= 65535;
-           if (!sound) throw CLI::ValidationError("--listen", text + " is not [ADDRESS:]PORT");
-           options->receiver.port = static_cast<std::uint16_t>(std::stoi(digits));
-           if (colon != std::string::npos) options->receiver.address = text.substr(0, colon);
+           if (!read_address(text, options->receiver.address, options->receiver.port)) {
+             throw CLI::ValidationError("--listen", text + " is not [ADDRESS:]PORT");
+           }
          },
          "Where robots find us [127.0.0.1:PORT]; 0.0.0.0:PORT is every interface")
       ->type_name("[ADDRESS:]PORT")
@@ -133,6 +163,19 @@ void add_receive(CLI::App& app, Command& command) {
       ->required();
   sub->add_option("--metrics", options->metrics, "Serve Prometheus text at /metrics")
       ->type_name("[HOST:]PORT");
+  sub->add_option_function<std::string>(
+         "--view",
+         [options](const std::string& text) {
+           options->view = text;
+           if (!read_address(text, options->viewer.address, options->viewer.port)) {
+             throw CLI::ValidationError("--view", text + " is not [ADDRESS:]PORT");
+           }
+         },
+         "Show the sweeps in the browser and in Foxglove, at [127.0.0.1:PORT]")
+      ->type_name("[ADDRESS:]PORT");
+  sub->add_option("--view-token", options->viewer.token,
+                  "Who views needs it: ?token=TOKEN; has to be at other addresses")
+      ->type_name("TOKEN");
   sub->add_flag("--json", options->json, "Print the outcome as JSON; not with -o -");
   sub->footer("Example: sweepcast receive --listen 0.0.0.0:5600 --keys robots.keys -o received");
   sub->callback([options, &command] { command = [options] { return receive(*options); }; });

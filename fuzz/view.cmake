@@ -1,0 +1,2 @@
+# Targets for src/view.
+sweepcast_fuzz(view_client sweepcast_view)
