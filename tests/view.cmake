@@ -18,3 +18,11 @@ if(SWEEPCAST_WITH_VIEW)
       SWEEPCAST_FOXGLOVE_TEST="${CMAKE_CURRENT_SOURCE_DIR}/view/foxglove")
   endif()
 endif()
+
+# The page, in a browser.
+if(SWEEPCAST_WITH_VIEW AND SWEEPCAST_APPS AND NOT SWEEPCAST_SANITIZE)
+  add_test(NAME viewer_page COMMAND ${CMAKE_COMMAND} -E env SWEEPCAST=$<TARGET_FILE:sweepcast_tool>
+    ${PROJECT_SOURCE_DIR}/viewer/tests/ctest)
+  set_tests_properties(viewer_page PROPERTIES
+    TIMEOUT 900 PROCESSORS 2 SKIP_REGULAR_EXPRESSION "^skipped: ")
+endif()
