@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kCell = 2.0 * static_cast<double>(PillarGrid::kSize);
-constexpr double kPositive = 0.6;
-constexpr double kNegative = 0.45;
+constexpr double kPositive = 0.55;
+constexpr double kNegative = 0.4;
 
 struct Size {
   const char* label;

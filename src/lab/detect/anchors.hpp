@@ -31,8 +31,8 @@ struct AnchorTargets {
   std::vector<std::int64_t> backward;  ///< 1 where its box points away from the anchor, else 0
 };
 
-/// Positive are anchors whose outline has an IoU of at least 0.6 with a box, and the best of each
-/// box; negative those with less than 0.45 with all. Boxes with fewer than `min_points` points are
+/// Positive are anchors whose outline has an IoU of at least 0.55 with a box, and the best of each
+/// box; negative those with less than 0.4 with all. Boxes with fewer than `min_points` points are
 /// neither: anchors on them do not count.
 [[nodiscard]] AnchorTargets assign_targets(std::span<const Box> boxes, int min_points);
 

@@ -93,7 +93,8 @@ std::vector<Raised> above_ground(const std::vector<Eigen::Vector3d>& points) {
   std::vector<Raised> raised;
   for (const auto& p : points) {
     const double height = p.z() - ground[cells.of(p)];
-    if (height >= kLowest) raised.push_back({p, height});
+    // Trees reach over cars: what is far above does not join clusters.
+    if (height >= kLowest && height <= kHighest + 0.3) raised.push_back({p, height});
   }
   return raised;
 }

@@ -30,7 +30,7 @@ struct Block {
   std::int64_t channels;
   std::int64_t enlarge;  ///< to the first block's resolution
 };
-constexpr std::array<Block, 3> kBlocks{{{3, 32, 1}, {3, 64, 2}, {3, 64, 4}}};
+constexpr std::array<Block, 3> kBlocks{{{2, 32, 1}, {3, 64, 2}, {2, 64, 4}}};
 
 // The greatest of each pillar's points, channel by channel, and at least 0: the paper's ReLU and
 // maximum in one, without padding pillars to the same number of points.
@@ -139,8 +139,9 @@ PillarBatch make_batch(std::span<const Pillars> sweeps) {
       cell.push_back(static_cast<std::int64_t>(b) * kCells + c);
     }
   }
-  return {torch::tensor(features).view({-1, kPointFeatures}), tensor_of(std::move(owner)),
-          tensor_of(std::move(cell)), static_cast<std::int64_t>(sweeps.size())};
+  return {torch::tensor(features).view({static_cast<std::int64_t>(owner.size()), kPointFeatures}),
+          tensor_of(std::move(owner)), tensor_of(std::move(cell)),
+          static_cast<std::int64_t>(sweeps.size())};
 }
 
 PillarNetworkImpl::PillarNetworkImpl()

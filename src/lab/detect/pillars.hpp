@@ -13,8 +13,8 @@ namespace sweepcast::lab {
 
 /// The grid: square pillars, the sensor in the middle. Rows go along y, columns along x.
 struct PillarGrid {
-  static constexpr int kSide = 320;        ///< pillars in a row and in a column
-  static constexpr float kSize = 0.32F;    ///< metres
+  static constexpr int kSide = 256;        ///< pillars in a row and in a column
+  static constexpr float kSize = 0.4F;     ///< metres
   static constexpr float kReach = 51.2F;   ///< kSide * kSize / 2
   static constexpr float kLowest = -6.0F;  ///< z of points that count, metres
   static constexpr float kHighest = 4.0F;

@@ -46,7 +46,8 @@ BatchTargets join(std::span<const Example> examples) {
     }
   }
   return {torch::tensor(state).view({-1, kAnchors}), torch::tensor(positive, torch::kInt64),
-          torch::tensor(residuals).view({-1, kResiduals}), torch::tensor(backward, torch::kInt64)};
+          torch::tensor(residuals).view({static_cast<std::int64_t>(backward.size()), kResiduals}),
+          torch::tensor(backward, torch::kInt64)};
 }
 
 // Focal loss (Lin et al., Focal loss for dense object detection, ICCV 2017), summed.
