@@ -115,9 +115,15 @@ TEST(Anchors, StatesFollowTheOverlap) {
     const float state = targets.state[static_cast<std::size_t>(index)];
     const double overlap = at.label == "Car" ? bev_iou(car, at) : 0.0;
     const double other = at.label == "Car" ? bev_iou(sparse, at) : 0.0;
-    if (overlap >= 0.55) EXPECT_EQ(state, 1.0F);
-    if (other >= 0.4) EXPECT_EQ(state, -1.0F);
-    if (overlap < 0.4 && other < 0.4) EXPECT_EQ(state, 0.0F) << at.label;
+    if (overlap >= 0.55) {
+      EXPECT_EQ(state, 1.0F);
+    }
+    if (other >= 0.4) {
+      EXPECT_EQ(state, -1.0F);
+    }
+    if (overlap < 0.4 && other < 0.4) {
+      EXPECT_EQ(state, 0.0F) << at.label;
+    }
     between += state == -1.0F ? 1 : 0;
   }
   EXPECT_GT(between, 4);

@@ -4,6 +4,7 @@
 #include <torch/autograd.h>
 #include <torch/nn/functional/activation.h>
 #include <torch/nn/modules/activation.h>
+#include <torch/nn/modules/pixelshuffle.h>
 #include <torch/types.h>
 
 #include <algorithm>
@@ -95,12 +96,19 @@ nn::Sequential make_block(const Block& block, std::int64_t channels) {
   return layers;
 }
 
+// A convolution of single places. Dilation does nothing to those, but makes libtorch take oneDNN
+// for them on one thread too, where it would otherwise take a BLAS that may be slow.
+nn::Conv2dOptions single_places(std::int64_t from, std::int64_t to) {
+  return nn::Conv2dOptions(from, to, 1).dilation(2);
+}
+
+// A transposed convolution whose stride is its size, as a convolution and a shuffle of its channels
+// to places, which libtorch has faster.
 nn::Sequential make_up(const Block& block) {
-  return nn::Sequential(
-      nn::ConvTranspose2d(nn::ConvTranspose2dOptions(block.channels, kUpChannels, block.enlarge)
-                              .stride(block.enlarge)
-                              .bias(false)),
-      norm_of(kUpChannels), nn::ReLU(nn::ReLUOptions().inplace(true)));
+  const std::int64_t places = block.enlarge * block.enlarge;
+  return nn::Sequential(nn::Conv2d(single_places(block.channels, kUpChannels * places).bias(false)),
+                        nn::PixelShuffle(nn::PixelShuffleOptions(block.enlarge)),
+                        norm_of(kUpChannels), nn::ReLU(nn::ReLUOptions().inplace(true)));
 }
 
 torch::Tensor tensor_of(std::vector<std::int64_t> numbers) {
@@ -145,9 +153,9 @@ PillarBatch make_batch(std::span<const Pillars> sweeps) {
 }
 
 PillarNetworkImpl::PillarNetworkImpl()
-    : point_layer_(nn::Conv2dOptions(kPointFeatures, kPillarChannels, 1).bias(false)),
+    : point_layer_(single_places(kPointFeatures, kPillarChannels).bias(false)),
       point_norm_(norm_of(kPillarChannels)),
-      head_(nn::Conv2dOptions(kUpChannels * kBlocks.size(), kHeadChannels, 1)) {
+      head_(single_places(kUpChannels * kBlocks.size(), kHeadChannels)) {
   register_module("point_layer", point_layer_);
   register_module("point_norm", point_norm_);
   std::int64_t channels = kPillarChannels;
