@@ -32,3 +32,6 @@ if(SWEEPCAST_WITH_TORCH AND SWEEPCAST_WITH_EMBREE)
   target_compile_definitions(lab_detect_network_test PRIVATE
     SWEEPCAST_WEIGHTS="${PROJECT_SOURCE_DIR}/models/pointpillars.weights")
 endif()
+if(SWEEPCAST_APPS AND SWEEPCAST_WITH_EMBREE)
+  sweepcast_test(lab/detect_tool tool_fixture)
+endif()

@@ -78,8 +78,8 @@ Box anchor(int index) {
   const double reach = static_cast<double>(PillarGrid::kReach);
   Box box;
   box.label = size.label;
-  box.centre = {(cell % kOutputSide + 0.5) * kCell - reach,
-                (cell / kOutputSide + 0.5) * kCell - reach, size.z};
+  const int row = cell / kOutputSide, column = cell % kOutputSide;
+  box.centre = {(column + 0.5) * kCell - reach, (row + 0.5) * kCell - reach, size.z};
   box.length = size.length;
   box.width = size.width;
   box.height = size.height;

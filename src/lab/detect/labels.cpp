@@ -211,11 +211,11 @@ Result<Labels> parse_pandaset_cuboids(std::string_view text, const RigidTransfor
   while (const auto line = lines.next()) {
     if (line->empty()) continue;
     const auto cells = cells_of(*line);
-    std::vector<std::string_view> words;
-    for (const std::size_t column : at) {
-      words.push_back(column < cells.size() ? cells[column] : std::string_view());
+    std::array<std::string_view, kColumns.size()> words;
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      if (at[i] < cells.size()) words[i] = cells[at[i]];
     }
-    const auto n = numbers_of(std::span(words).subspan(1));
+    const auto n = numbers_of(std::span<const std::string_view>(words).subspan(1));
     Box box;
     if (n) {
       box.label = words[0];
