@@ -190,7 +190,7 @@ PillarOutput PillarNetworkImpl::forward(const PillarBatch& batch) {
   const auto part = [&](std::int64_t begin, std::int64_t end, std::int64_t each) {
     return said.slice(3, begin, end).reshape({batch.sweeps, kAnchors, each});
   };
-  constexpr std::int64_t kEndOfResiduals = kAnchorsOfCell * (1 + kResiduals);
+  constexpr std::int64_t kEndOfResiduals = std::int64_t{kAnchorsOfCell} * (1 + kResiduals);
   return {part(0, kAnchorsOfCell, 1).squeeze(2), part(kAnchorsOfCell, kEndOfResiduals, kResiduals),
           part(kEndOfResiduals, kHeadChannels, 2)};
 }
