@@ -1,6 +1,6 @@
 # What `cmake --install` puts where. Three components, so that a robot may install little:
 #   runtime      the tool `sweepcast`, and the libraries where they are shared
-#   lab          `sweepcast-lab`, which needs heavy libraries; `sweepcast` runs it
+#   lab          `sweepcast-lab`, which needs heavy libraries, and its weights; `sweepcast` runs it
 #   development  headers, static libraries, CMake package, pkg-config files
 
 include(CMakePackageConfigHelpers)
@@ -50,5 +50,7 @@ if(SWEEPCAST_APPS)
   endfunction()
   install_tool(sweepcast_tool ${CMAKE_INSTALL_BINDIR} runtime)
   install_tool(sweepcast_lab_tool ${CMAKE_INSTALL_LIBEXECDIR}/sweepcast lab)
+  install(FILES ${PROJECT_SOURCE_DIR}/models/pointpillars.weights
+    DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/sweepcast COMPONENT lab)
 endif()
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)

@@ -11,5 +11,7 @@ void add_bench(CLI::App& app, Command& command);
 void add_ablate(CLI::App& app, Command& command);
 void add_odometry(CLI::App& app, Command& command);
 void add_mesh(CLI::App& app, Command& command);
+void add_detect(CLI::App& app, Command& command);
+void add_train_detector(CLI::App& app, Command& command);
 
 }  // namespace sweepcast::app

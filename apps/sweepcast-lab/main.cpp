@@ -14,6 +14,8 @@ int main(int argc, char** argv) try {
   sweepcast::app::add_ablate(app, command);
   sweepcast::app::add_odometry(app, command);
   sweepcast::app::add_mesh(app, command);
+  sweepcast::app::add_detect(app, command);
+  sweepcast::app::add_train_detector(app, command);
   return sweepcast::app::run(app, command, argc, argv);
 } catch (const std::exception& error) {  // memory ran out before there was a command to blame
   std::fputs(error.what(), stderr);

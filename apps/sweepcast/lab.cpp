@@ -1,4 +1,4 @@
-// The lab's commands, from simulate to mesh: `sweepcast-lab` has them, with the heavy
+// The lab's commands, from simulate to train-detector: `sweepcast-lab` has them, with the heavy
 // libraries that they need.
 #include <fmt/core.h>
 #include <unistd.h>
@@ -23,13 +23,15 @@ struct LabCommand {
   const char* help;
 };
 
-constexpr std::array<LabCommand, 6> kLabCommands{{
+constexpr std::array<LabCommand, 8> kLabCommands{{
     {"simulate", "Drive a simulated sensor through a simulated town"},
     {"simulate-link", "Stream sweeps over a recorded link in virtual time, by each strategy"},
     {"bench", "Measure ratio, distortion and time over settings, beside other codecs"},
     {"ablate", "Measure what each of the method's ideas is worth"},
     {"odometry", "Find where the sensor was, from sweeps alone"},
     {"mesh", "Make one surface of many sweeps, and compare it"},
+    {"detect", "Find cars in sweeps, and say how well"},
+    {"train-detector", "Train PointPillars on simulated drives"},
 }};
 
 constexpr const char* kProgram = "sweepcast-lab";

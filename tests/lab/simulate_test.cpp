@@ -105,7 +105,7 @@ TEST(Simulate, BoxesHoldThePointsThatTheyCount) {
     deskewed.push_back(last.invert(fired.apply(point(sweep.cloud, i))));
   }
   int large = 0;
-  for (const Box& box : sweep.boxes) {
+  for (const SimulatedBox& box : sweep.boxes) {
     EXPECT_NE(box.kind, "Pedestrian") << "nothing moves in a static drive";
     const Pose frame = upright(box.middle, std::cos(box.yaw), std::sin(box.yaw));
     int inside = 0;
@@ -127,7 +127,7 @@ TEST(Simulate, MovingThingsHaveBoxesToo) {
   const SimulatedSweep sweep = sweep_of(noisy_hdl64(), 1);
   int cars = 0;
   int people = 0;
-  for (const Box& box : sweep.boxes) {
+  for (const SimulatedBox& box : sweep.boxes) {
     EXPECT_GE(box.points, 1);
     (box.kind == "Pedestrian" ? people : cars) += 1;
   }

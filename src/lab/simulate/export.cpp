@@ -52,9 +52,9 @@ std::string pose_line(const Pose& pose) {
   return line + '\n';
 }
 
-std::string box_lines(const std::vector<Box>& boxes) {
+std::string box_lines(const std::vector<SimulatedBox>& boxes) {
   std::string text;
-  for (const Box& box : boxes) {
+  for (const SimulatedBox& box : boxes) {
     text += box.kind;
     for (double value :
          {box.middle.x, box.middle.y, box.middle.z, box.length, box.width, box.height, box.yaw}) {

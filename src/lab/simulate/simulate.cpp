@@ -144,7 +144,7 @@ struct Drive::Parts {
   [[nodiscard]] std::optional<Point> pulse(std::int64_t firing, int ring, double part,
                                            const Pose& pose, const Solid& moving, int index) const;
   [[nodiscard]] std::vector<Point> cast(int index, const Solid& moving) const;
-  [[nodiscard]] std::vector<Box> boxes(const std::vector<Point>& points, int index) const;
+  [[nodiscard]] std::vector<SimulatedBox> boxes(const std::vector<Point>& points, int index) const;
 };
 
 // The car follows its lane, its body nods and rolls a little on its springs.
@@ -235,7 +235,7 @@ std::vector<Point> Drive::Parts::cast(int index, const Solid& moving) const {
   return points;
 }
 
-std::vector<Box> Drive::Parts::boxes(const std::vector<Point>& points, int index) const {
+std::vector<SimulatedBox> Drive::Parts::boxes(const std::vector<Point>& points, int index) const {
   std::map<std::uint16_t, int> counts;
   for (const Point& p : points) {
     if (p.object != 0) ++counts[p.object];
@@ -243,7 +243,7 @@ std::vector<Box> Drive::Parts::boxes(const std::vector<Point>& points, int index
   const std::int64_t last_ns = last_firing_ns(index);
   const Pose eye = sensor_pose(last_ns);
   const double seconds = static_cast<double>(last_ns) / kSecond;
-  std::vector<Box> found;
+  std::vector<SimulatedBox> found;
   for (const auto& [object, count] : counts) {
     const std::size_t number = object - std::size_t{1};
     const bool parked = number < town.parked.size();

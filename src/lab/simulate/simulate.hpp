@@ -31,7 +31,7 @@ struct SimulateOptions {
 
 /// A car, van or pedestrian that at least one point lies on, in the sensor's frame at the sweep's
 /// last firing, as it stood then.
-struct Box {
+struct SimulatedBox {
   std::string_view kind;
   Vec3 middle;  ///< of the box, not of its floor
   double length = 0.0, width = 0.0, height = 0.0;
@@ -43,7 +43,7 @@ struct SimulatedSweep {
   /// Raw: each point in the frame that the sensor had at its firing. With ring, intensity and time.
   PointCloud cloud;
   Pose pose;  ///< the sensor at the sweep's last firing, in its frame at the first sweep's last
-  std::vector<Box> boxes;
+  std::vector<SimulatedBox> boxes;
 };
 
 /// One drive. Sweeps are independent of each other and may be made in any order, by many threads.
