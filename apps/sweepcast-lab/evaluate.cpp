@@ -205,7 +205,7 @@ void add_evaluate(CLI::App& app, Command& command) {
       "measured: a run that was stopped goes on where it was, and one of the same sweeps,\n"
       "settings and version measures nothing.\n\n"
       "Example:\n"
-      "  sweepcast simulate -o drive --sweeps 100 --blocks 1\n"
+      "  sweepcast simulate -o drive --sweeps 200\n"
       "  sweepcast evaluate drive -o report");
   sub->add_option("DRIVE", options->drive,
                   "A folder of sweeps, with poses.txt, boxes/ and mesh.ply as far as there are")

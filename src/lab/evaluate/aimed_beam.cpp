@@ -35,12 +35,13 @@ Result<std::size_t> model_bytes(std::span<const std::byte> frame) {
 
 class AimedBeam : public Peer {
  public:
-  AimedBeam(double ratio, double model_share, std::size_t models, Encoder encoder)
-      : Peer("beam", fmt::format("ratio {}", ratio)),
+  AimedBeam(double ratio, double model_share, std::size_t models, Encoder encoder, bool fill)
+      : Peer(fill ? "beam-fill" : "beam", fmt::format("ratio {}", ratio)),
         ratio_(ratio),
         model_share_(model_share),
         models_due_(models),
-        encoder_(std::move(encoder)) {}
+        encoder_(std::move(encoder)),
+        decoder_(DecoderOptions{.fill = fill}) {}
 
   Result<std::span<const std::byte>> encode(const PointCloud& cloud) override {
     const double nominal =
@@ -78,7 +79,7 @@ class AimedBeam : public Peer {
 }  // namespace
 
 Result<std::unique_ptr<Peer>> make_aimed_beam(double ratio, const PointCloud& first,
-                                              std::size_t sweeps) {
+                                              std::size_t sweeps, bool fill) {
   if (!(ratio >= 1.0) || sweeps == 0) {
     return fail(ErrorCode::invalid_argument,
                 fmt::format("beam: ratio {} over {} sweeps; give 1 or more", ratio, sweeps));
@@ -102,7 +103,7 @@ Result<std::unique_ptr<Peer>> make_aimed_beam(double ratio, const PointCloud& fi
   }
   auto encoder = Encoder::create(options_of(static_cast<std::size_t>(budget)));
   if (!encoder) return tl::unexpected(encoder.error());
-  return std::make_unique<AimedBeam>(ratio, share, models, std::move(*encoder));
+  return std::make_unique<AimedBeam>(ratio, share, models, std::move(*encoder), fill);
 }
 
 }  // namespace sweepcast::lab

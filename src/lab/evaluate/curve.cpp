@@ -88,6 +88,8 @@ std::vector<Standing> standings_of(std::span<const EvaluationRow> rows) {
         if (curve.codec == "beam") {
           standing.ours = *value;
           has_ours = true;
+        } else if (curve.codec == "beam-fill") {
+          continue;  // the same frames
         } else if (standing.rival.empty() ||
                    is_better(*value, standing.theirs, metric->higher_is_better)) {
           standing.rival = curve.codec;

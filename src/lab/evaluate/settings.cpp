@@ -41,6 +41,9 @@ class UncodedDrive : public Peer {
   std::vector<std::byte> bytes_;
 };
 
+/// From this ratio on beam leaves points out, as a rule, which a decoder may fill in.
+constexpr double kThinned = 100.0;
+
 Status add_beam(const DriveFiles& drive, SettingChoice& choice) {
   PointCloud first;
   if (Status read = read_cloud(drive.sweeps.front(), first); !read) return read;
@@ -53,12 +56,15 @@ Status add_beam(const DriveFiles& drive, SettingChoice& choice) {
   std::vector<double> ratios(kRatios.begin(), kRatios.end());
   ratios.insert(ratios.end(), kFurtherRatios.begin(), kFurtherRatios.end());
   std::sort(ratios.begin(), ratios.end());
-  for (const double ratio : ratios) {
-    auto peer = make_aimed_beam(ratio, first, drive.sweeps.size());
-    if (peer) {
-      choice.peers.push_back(std::move(*peer));
-    } else {
-      choice.left_out.push_back(std::move(peer.error().message));
+  for (const bool fill : {false, true}) {
+    for (const double ratio : ratios) {
+      if (fill && ratio < kThinned) continue;
+      auto peer = make_aimed_beam(ratio, first, drive.sweeps.size(), fill);
+      if (peer) {
+        choice.peers.push_back(std::move(*peer));
+      } else if (!fill) {
+        choice.left_out.push_back(std::move(peer.error().message));
+      }
     }
   }
   return {};

@@ -42,9 +42,9 @@ struct TaskOptions {
 [[nodiscard]] Result<std::unique_ptr<const Task>> make_mesh_task(const DriveFiles& drive,
                                                                  const TaskOptions& options);
 
-/// Average precision of boxes seen from above, 40 recall points: `bev_ap50`, `bev_ap70` (overlaps
-/// of 0.5 and 0.7). Of every second sweep. Errors: not_found (no true boxes), unsupported (no
-/// libtorch).
+/// Average precision of cars seen from above, 40 recall points: `bev_ap50`, `bev_ap70` (overlaps of
+/// 0.5 and 0.7). Of every second sweep. The truth is a folder `boxes`, as `simulate` writes it, or
+/// `label_2`, as KITTI has it. Error: not_found (no true boxes, or no weights).
 [[nodiscard]] Result<std::unique_ptr<const Task>> make_detection_task(const DriveFiles& drive,
                                                                       const TaskOptions& options);
 
