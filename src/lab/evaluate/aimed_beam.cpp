@@ -51,7 +51,7 @@ class AimedBeam : public Peer {
         std::clamp(left_, (1.0 - kMostChange) * nominal, (1.0 + kMostChange) * nominal);
     const Status set = encoder_.set_target_bytes(std::max<std::size_t>(1, std::size_t(budget)));
     if (!set) return tl::unexpected(set.error());
-    const auto frame = encoder_.encode(cloud, SweepInfo{});
+    auto frame = encoder_.encode(cloud, SweepInfo{});
     if (!frame) return frame;
     const auto model = model_bytes(*frame);
     if (!model) return tl::unexpected(model.error());
