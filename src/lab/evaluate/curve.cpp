@@ -75,6 +75,11 @@ std::optional<double> best_at(const Curve& curve, double ratio, bool higher_is_b
   return best;
 }
 
+bool Standing::is_ahead() const {
+  const double lead = metric->higher_is_better ? ours - theirs : theirs - ours;
+  return rival.empty() || lead > -0.5 * std::pow(10.0, -metric->digits);
+}
+
 std::vector<Standing> standings_of(std::span<const EvaluationRow> rows) {
   std::vector<Standing> standings;
   for (const Metric* metric : metrics_of(rows)) {

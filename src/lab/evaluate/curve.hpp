@@ -54,10 +54,8 @@ struct Standing {
   std::string rival;  ///< the best of the others; empty where none reaches this ratio
   double theirs = 0.0;
 
-  [[nodiscard]] bool is_ahead() const {
-    if (rival.empty()) return true;
-    return metric->higher_is_better ? ours > theirs : ours < theirs;
-  }
+  /// Or as good, as far as the digits go that are shown.
+  [[nodiscard]] bool is_ahead() const;
 };
 
 /// At each of `kRatios`, for each metric that was measured; ratios that beam has not reached are

@@ -77,13 +77,13 @@ class SharedReference {
   [[nodiscard]] const MeshSetup& setup() const { return setup_; }
   [[nodiscard]] const Result<MeshReference>& get() {
     std::call_once(made_, [this] { reference_ = make_reference(setup_); });
-    return reference_;
+    return *reference_;
   }
 
  private:
   MeshSetup setup_;
   std::once_flag made_;
-  Result<MeshReference> reference_;
+  std::optional<Result<MeshReference>> reference_;
 };
 
 class MeshRun : public TaskRun {

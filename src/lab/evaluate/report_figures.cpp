@@ -164,7 +164,8 @@ std::string standing_section(std::span<const EvaluationRow> rows) {
   std::string body;
   for (const Metric* metric : metrics_of(rows)) body += row_of(standings, *metric);
   return fmt::format(
-      "<section><h2>Who is ahead</h2>\n<p>Codec <b>beam</b> is ahead of every other codec in {} of "
+      "<section><h2>Who is ahead</h2>\n<p>Codec <b>beam</b> is ahead of every other codec, or "
+      "level with the best, in {} of "
       "{} places. Below its figure stands the best of the others: what they give at that ratio or "
       "a larger one, between their settings by the line over the ratio's logarithm.</p>\n{}"
       "<p class=\"soft scroll-hint\">The table can be moved sideways.</p>\n"
