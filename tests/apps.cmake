@@ -10,6 +10,10 @@ if(SWEEPCAST_APPS)
 
   sweepcast_test(apps/commands tool_fixture)
   sweepcast_test(apps/errors tool_fixture sweepcast_io)
+  sweepcast_test(apps/evaluate tool_fixture)
+  add_test(NAME report_in_browser
+           COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/apps/report_in_browser $<TARGET_FILE:sweepcast_tool>)
+  set_tests_properties(report_in_browser PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 600)
   sweepcast_test(apps/input_checks sweepcast_app)
   sweepcast_test(apps/interruption tool_fixture)
   sweepcast_test(apps/verify tool_fixture sweepcast_io)

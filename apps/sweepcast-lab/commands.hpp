@@ -9,6 +9,7 @@ void add_simulate(CLI::App& app, Command& command);
 void add_simulate_link(CLI::App& app, Command& command);
 void add_bench(CLI::App& app, Command& command);
 void add_ablate(CLI::App& app, Command& command);
+void add_evaluate(CLI::App& app, Command& command);
 void add_odometry(CLI::App& app, Command& command);
 void add_mesh(CLI::App& app, Command& command);
 void add_detect(CLI::App& app, Command& command);

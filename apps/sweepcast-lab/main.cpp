@@ -12,6 +12,7 @@ int main(int argc, char** argv) try {
   sweepcast::app::add_simulate_link(app, command);
   sweepcast::app::add_bench(app, command);
   sweepcast::app::add_ablate(app, command);
+  sweepcast::app::add_evaluate(app, command);
   sweepcast::app::add_odometry(app, command);
   sweepcast::app::add_mesh(app, command);
   sweepcast::app::add_detect(app, command);

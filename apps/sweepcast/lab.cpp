@@ -23,11 +23,12 @@ struct LabCommand {
   const char* help;
 };
 
-constexpr std::array<LabCommand, 8> kLabCommands{{
+constexpr std::array<LabCommand, 9> kLabCommands{{
     {"simulate", "Drive a simulated sensor through a simulated town"},
     {"simulate-link", "Stream sweeps over a recorded link in virtual time, by each strategy"},
     {"bench", "Measure ratio, distortion and time over settings, beside other codecs"},
     {"ablate", "Measure what each of the method's ideas is worth"},
+    {"evaluate", "Report what each codec does to odometry, meshing and detection on a drive"},
     {"odometry", "Find where the sensor was, from sweeps alone"},
     {"mesh", "Make one surface of many sweeps, and compare it"},
     {"detect", "Find cars in sweeps, and say how well"},
