@@ -19,7 +19,7 @@ inline constexpr std::string_view kOriginal = "original";
 inline constexpr std::array<double, 5> kRatios{30, 60, 100, 200, 300};
 /// And further ones, so that curves go on to 400.
 inline constexpr std::array<double, 2> kFurtherRatios{150, 400};
-/// Beam's finest setting, a bound of errors: metres. Its curve begins at about 15.
+/// Beam's finest setting, a bound of errors: metres; a ratio of about 8 on a sensor of 64 beams.
 inline constexpr double kFinestErrorM = 0.002;
 
 struct SettingOptions {
