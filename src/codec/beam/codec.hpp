@@ -67,6 +67,7 @@ class Encoder {
 
  private:
   [[nodiscard]] double error_m() const { return quality_.step_m[0] / 2.0; }
+  [[nodiscard]] double projection_error_m() const;
   [[nodiscard]] Status fit_budget(const CloudView& cloud, const SweepInfo& info, PartList& parts,
                                   SweepCounts& counts);
   void write_smallest(const CloudView& cloud, const SweepInfo& info, PartList& parts,

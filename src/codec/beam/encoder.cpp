@@ -25,6 +25,11 @@ constexpr int kBaseCols = 16;
 // it gives the fewest bytes in all, within 2 % on every sensor's sweeps.
 constexpr double kLosslessError = 0.01;
 
+// Of level 0. With a budget the quality is found after the projection, which begins with that of
+// the sweep before: were it finer than this, residuals of the angles would take the bytes of
+// points.
+constexpr double kFinestBudgetError = kBeamLevels.front().step_m[0] / 2.0;
+
 // How often it is estimated which points of a crowded sweep had better be extras.
 constexpr int kMostTries = 3;
 // After how many frames that is done again.
@@ -115,6 +120,10 @@ Status Encoder::set_target_bytes(std::size_t bytes) {
   return {};
 }
 
+double Encoder::projection_error_m() const {
+  return budget_ ? std::max(error_m(), kFinestBudgetError) : error_m();
+}
+
 // One sweep's way: sensor model, range image, layers of ranges; what has no cell goes aside.
 Status Encoder::encode(const CloudView& cloud, const SweepInfo& info, PartList& parts,
                        SweepCounts& counts) {
@@ -125,7 +134,7 @@ Status Encoder::encode(const CloudView& cloud, const SweepInfo& info, PartList& 
   lap_ = StageLap(stages_);
   attributes_.read(cloud, options_);
   lap_.end("attributes");
-  imager_.project(cloud, error_m(), counts);
+  imager_.project(cloud, projection_error_m(), counts);
   lap_.end("sensor model, range image");
   const bool may_choose = !budget_ && !options_.level && !options_.lossless &&
                           options_.max_error_m <= kWidestCrowd && options_.effort != Effort::fast &&

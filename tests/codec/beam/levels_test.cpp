@@ -147,6 +147,19 @@ TEST(BeamBudget, NoFrameIsLargerAndMostComeNear) {
   }
 }
 
+TEST(BeamBudget, PlentyOfBytesKeepEveryPoint) {
+  std::mt19937 random(3);
+  Encoder encoder = test::encoder_of(budget_options(30'000));
+  for (int i = 0; i < 6; ++i) {
+    PointCloud cloud = test::spinning_sweep(32, 900, static_cast<std::uint32_t>(50 + i));
+    for (auto* column : {&cloud.x, &cloud.y, &cloud.z}) {  // off the beams by up to 4 mm
+      for (float& x : *column) x += static_cast<float>(test::uniform(random, -0.004, 0.004));
+    }
+    EXPECT_LE(size_without_model(test::encode(encoder, cloud)), 30'000U) << i;
+    EXPECT_EQ(encoder.last_counts().points_coded, cloud.size()) << i;
+  }
+}
+
 TEST(BeamBudget, RealSweepsLandWithinThreePerCentBelow) {
   const auto paths = lab::real_sweeps("kitti_0048");
   if (paths.empty()) GTEST_SKIP() << "set SWEEPCAST_DATA to a folder with kitti_0048";
