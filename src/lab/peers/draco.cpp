@@ -159,13 +159,10 @@ Result<std::unique_ptr<Peer>> make_draco_peer(const DracoOptions& options) {
 }
 
 Result<Peers> draco_ladder() {
-  Peers peers;
-  for (int bits = 7; bits <= 14; ++bits) {
-    auto peer = make_draco_peer({.quantisation_bits = bits, .compression_level = 7});
-    if (!peer) return tl::unexpected(peer.error());
-    peers.push_back(std::move(*peer));
-  }
-  return peers;
+  static constexpr std::array<int, 8> kBits{7, 8, 9, 10, 11, 12, 13, 14};
+  return make_ladder(kBits, [](int bits) {
+    return make_draco_peer({.quantisation_bits = bits, .compression_level = 7});
+  });
 }
 
 namespace {

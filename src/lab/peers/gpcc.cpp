@@ -179,13 +179,7 @@ Result<std::unique_ptr<Peer>> make_gpcc_peer(const GpccOptions& options) {
 Result<Peers> gpcc_ladder() {
   static constexpr std::array<double, 10> kSteps{0.008, 0.016, 0.032, 0.05, 0.08,
                                                  0.1,   0.128, 0.16,  0.2,  0.3};
-  Peers peers;
-  for (const double step : kSteps) {
-    auto peer = make_gpcc_peer({.step_m = step});
-    if (!peer) return tl::unexpected(peer.error());
-    peers.push_back(std::move(*peer));
-  }
-  return peers;
+  return make_ladder(kSteps, [](double step) { return make_gpcc_peer({.step_m = step}); });
 }
 
 }  // namespace sweepcast::lab

@@ -208,17 +208,13 @@ struct Rung {
 };
 
 Result<Peers> ladder(std::span<const Rung> rungs, bool beam_aligned) {
-  Peers peers;
-  for (const Rung& rung : rungs) {
+  return make_ladder(rungs, [beam_aligned](const Rung& rung) {
     J2kOptions options;
     options.form.columns = rung.columns;
     options.form.beam_aligned = beam_aligned;
     options.rate = rung.rate;
-    auto peer = make_j2k_peer(options);
-    if (!peer) return tl::unexpected(peer.error());
-    peers.push_back(std::move(*peer));
-  }
-  return peers;
+    return make_j2k_peer(options);
+  });
 }
 
 }  // namespace

@@ -92,16 +92,12 @@ Result<Peers> jpegls_ladder() {
                                                 {1024, 125},
                                                 {512, 100},
                                                 {512, 250}}};
-  Peers peers;
-  for (const Rung& rung : kRungs) {
+  return make_ladder(kRungs, [](const Rung& rung) {
     JpeglsOptions options;
     options.form.columns = rung.columns;
     options.near = rung.near;
-    auto peer = make_jpegls_peer(options);
-    if (!peer) return tl::unexpected(peer.error());
-    peers.push_back(std::move(*peer));
-  }
-  return peers;
+    return make_jpegls_peer(options);
+  });
 }
 
 }  // namespace sweepcast::lab

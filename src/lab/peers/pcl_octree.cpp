@@ -14,8 +14,7 @@
 #include <string>
 #include <utility>
 
-#include "core/bytes.hpp"
-#include "core/crc32.hpp"
+#include "lab/peers/checked_frame.hpp"
 
 namespace sweepcast::lab {
 namespace {
@@ -68,26 +67,18 @@ class PclOctreePeer : public Peer {
     } catch (const std::exception& error) {
       return tl::unexpected(failed(error).error());
     }
-    const auto bytes = std::as_bytes(std::span(coded.data(), coded.size()));
-    frame_.clear();
-    ByteWriter writer(frame_);
-    writer.put(crc32(bytes));
-    writer.put_bytes(bytes);
+    write_checked(std::as_bytes(std::span(coded.data(), coded.size())), frame_);
     return std::span<const std::byte>(frame_);
   }
 
   Status decode(std::span<const std::byte> bytes, PointCloud& cloud) override {
     cloud.clear();
     if (bytes.empty()) return {};
-    ByteReader reader(bytes);
-    const auto checksum = reader.get<std::uint32_t>();
-    const auto coded = reader.get_bytes(reader.remaining());
-    if (!reader.ok() || crc32(coded) != checksum) {
-      return fail(ErrorCode::corrupt, "pcl: the checksum does not match");
-    }
+    const auto coded = read_checked(bytes);
+    if (!coded) return fail(ErrorCode::corrupt, "pcl: the checksum does not match");
     try {
       std::istringstream stream(
-          std::string(reinterpret_cast<const char*>(coded.data()), coded.size()));
+          std::string(reinterpret_cast<const char*>(coded->data()), coded->size()));
       PclCloud::Ptr decoded(new PclCloud);
       codec().decodePointCloud(stream, decoded);
       from_pcl(*decoded, cloud);
@@ -119,13 +110,7 @@ Result<std::unique_ptr<Peer>> make_pcl_octree_peer(const PclOctreeOptions& optio
 
 Result<Peers> pcl_octree_ladder() {
   static constexpr std::array<double, 9> kSteps{0.01, 0.02, 0.03, 0.05, 0.08, 0.1, 0.15, 0.25, 0.4};
-  Peers peers;
-  for (const double step : kSteps) {
-    auto peer = make_pcl_octree_peer({.step_m = step});
-    if (!peer) return tl::unexpected(peer.error());
-    peers.push_back(std::move(*peer));
-  }
-  return peers;
+  return make_ladder(kSteps, [](double step) { return make_pcl_octree_peer({.step_m = step}); });
 }
 
 }  // namespace sweepcast::lab

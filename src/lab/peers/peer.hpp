@@ -51,4 +51,16 @@ class Peer {
 
 using Peers = std::vector<std::unique_ptr<Peer>>;
 
+/// The peers that `make` gives of each rung, in order. Errors: the first of `make`'s.
+template <class Rungs, class Make>
+[[nodiscard]] Result<Peers> make_ladder(const Rungs& rungs, const Make& make) {
+  Peers peers;
+  for (const auto& rung : rungs) {
+    Result<std::unique_ptr<Peer>> peer = make(rung);
+    if (!peer) return tl::unexpected(peer.error());
+    peers.push_back(std::move(*peer));
+  }
+  return peers;
+}
+
 }  // namespace sweepcast::lab

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/crc32.hpp"
+#include "lab/peers/checked_frame.hpp"
 #include "lab/peers/mask_coder.hpp"
 
 namespace sweepcast::lab {
@@ -48,21 +48,16 @@ class RangeImagePeer : public Peer {
     if (Status coded = coder_->encode(raster_.ranges, raster_.columns, body_); !coded) {
       return tl::unexpected(coded.error());
     }
-    frame_.clear();
-    ByteWriter frame(frame_);
-    frame.put(crc32(body_));
-    frame.put_bytes(body_);
+    write_checked(body_, frame_);
     return std::span<const std::byte>(frame_);
   }
 
   Status decode(std::span<const std::byte> bytes, PointCloud& cloud) override {
     cloud.clear();
     if (bytes.empty()) return {};
-    ByteReader reader(bytes);
-    const auto checksum = reader.get<std::uint32_t>();
-    if (!reader.ok() || crc32(bytes.subspan(reader.position())) != checksum) {
-      return damaged("checksum");
-    }
+    const auto body = read_checked(bytes);
+    if (!body) return damaged("checksum");
+    ByteReader reader(*body);
     if (!read_head(reader, decoded_)) return damaged("head");
     const std::size_t mask_size = reader.get_varint(bytes.size());
     occupied_.assign(decoded_.ranges.size(), 1);

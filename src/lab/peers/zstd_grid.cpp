@@ -144,13 +144,9 @@ class ZstdGridPeer : public Peer {
 };
 
 Result<Peers> ladder(std::span<const double> steps, GridOrder order) {
-  Peers peers;
-  for (const double step : steps) {
-    auto peer = make_zstd_grid_peer({.step_m = step, .order = order});
-    if (!peer) return tl::unexpected(peer.error());
-    peers.push_back(std::move(*peer));
-  }
-  return peers;
+  return make_ladder(steps, [order](double step) {
+    return make_zstd_grid_peer({.step_m = step, .order = order});
+  });
 }
 
 }  // namespace
