@@ -18,7 +18,6 @@
 #include "io/file.hpp"
 #include "lab/detect/average_precision.hpp"
 #include "lab/detect/labels.hpp"
-#include "lab/detect/training_set.hpp"
 #include "sweepcast-lab/commands.hpp"
 #include "sweepcast-lab/detectors.hpp"
 #include "sweepcast/cloud_file.hpp"
@@ -35,13 +34,8 @@ struct DetectCommand {
   std::string truth;
   std::string detector = "pillars";
   std::string weights;
-  std::string moment = "last";
   lab::ScoreOptions score;
   bool json = false;
-
-  [[nodiscard]] lab::BoxTime time() const {
-    return moment == "met" ? lab::BoxTime::as_met : lab::BoxTime::at_last;
-  }
 };
 
 struct Detections {
@@ -56,19 +50,6 @@ struct Detections {
   }
 };
 
-/// The file before one of a drive's files of boxes; empty where there is none.
-std::filesystem::path file_before(const std::filesystem::path& folder, const std::string& stem) {
-  std::filesystem::path before;
-  std::error_code error;
-  for (std::filesystem::directory_iterator at(folder, error), end; !error && at != end;
-       at.increment(error)) {
-    const auto& path = at->path();
-    if (path.extension() != ".txt" || path.stem().string() >= stem) continue;
-    if (before.empty() || path.stem() > before.stem()) before = path;
-  }
-  return before;
-}
-
 /// The true boxes of a sweep; what lies where no label would be is taken out of those found.
 Result<std::vector<lab::Box>> truth_of(const std::filesystem::path& sweep, const PointCloud& cloud,
                                        const DetectCommand& options, std::vector<lab::Box>& found) {
@@ -78,12 +59,6 @@ Result<std::vector<lab::Box>> truth_of(const std::filesystem::path& sweep, const
   const auto counted = [](const lab::Box& box) { return box.points >= 0; };
   if (!std::all_of(boxes.begin(), boxes.end(), counted)) {
     lab::count_points(cloud, boxes);
-  } else if (options.time() == lab::BoxTime::as_met) {
-    const auto before = file_before(options.truth, sweep.stem().string());
-    const auto earlier =
-        before.empty() ? Result<std::vector<lab::Box>>(boxes) : lab::read_boxes(before);
-    if (!earlier) return tl::unexpected(earlier.error());
-    boxes = lab::boxes_as_met(boxes, *earlier);
   }
   if (labels->is_labelled) {
     std::erase_if(found, [&](const lab::Box& box) { return !labels->is_labelled(box.centre); });
@@ -155,7 +130,7 @@ void print(const DetectCommand& options, const Detections& detections) {
 Status detect(const DetectCommand& options) {
   const auto sweeps = collect_clouds(options.inputs);
   if (!sweeps) return tl::unexpected(sweeps.error());
-  const auto detector = make_detector(options.detector, options.weights, options.time());
+  const auto detector = make_detector(options.detector, options.weights);
   if (!detector) return tl::unexpected(detector.error());
   std::error_code error;
   std::filesystem::create_directories(options.output, error);
@@ -204,11 +179,6 @@ void add_detect(CLI::App& app, Command& command) {
       ->capture_default_str();
   sub->add_option("--weights", options->weights, "Of the network [those shipped]")
       ->type_name("FILE");
-  sub->add_option("--boxes-at", options->moment,
-                  "last: where things were at the sweep's last firing, of `simulate`'s sensors; "
-                  "met: where its beams met them, of any other sweeps")
-      ->check(CLI::IsMember({"last", "met"}))
-      ->capture_default_str();
   add_score_options(*sub, *options);
   sub->add_flag("--json", options->json, "Print the figures as JSON");
   sub->callback([options, &command] { command = [options] { return detect(*options); }; });

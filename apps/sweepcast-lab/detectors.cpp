@@ -11,10 +11,9 @@ std::filesystem::path shipped_weights() {
 }
 
 Result<std::unique_ptr<lab::Detector>> make_detector(const std::string& name,
-                                                     const std::filesystem::path& weights,
-                                                     lab::BoxTime time) {
+                                                     const std::filesystem::path& weights) {
   if (name == "clusters") return lab::make_cluster_detector();
-  return lab::make_pillar_detector(weights.empty() ? shipped_weights() : weights, time);
+  return lab::make_pillar_detector(weights.empty() ? shipped_weights() : weights);
 }
 
 }  // namespace sweepcast::app

@@ -188,6 +188,12 @@ void add_choices(CLI::App& sub, EvaluateCommand& options) {
       ->allow_extra_args(false)
       ->check(items_of(peers))
       ->type_name("NAME,...|all|none");
+  sub.add_option("--ratios", options.settings.ratios, "Ratios that beam is aimed at")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(number_between(1.0, 10'000.0))
+      ->type_name("R,...")
+      ->capture_default_str();
   sub.add_option("--settings", options.settings.settings_each,
                  "Settings of each of the others, spread over its ladder; 0: all")
       ->check(CLI::Range(0, 100))

@@ -77,7 +77,7 @@ TEST_F(PillarNetworks, TrainingIsRepeatableAndItsWeightsReadBack) {
   sweep.x = simulated.cloud.x;
   sweep.y = simulated.cloud.y;
   sweep.z = simulated.cloud.z;
-  sweep.at_last = sweep.as_met = truth_of(simulated);
+  sweep.boxes = truth_of(simulated);
   TrainOptions options;
   options.steps = 2;
   options.batch = 1;

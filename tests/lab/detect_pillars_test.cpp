@@ -35,8 +35,7 @@ TEST(Pillars, HoldThePointsOfTheirCell) {
   const std::vector<float> x{0.1F, 0.2F, 0.1F, 60.0F, kNan, 0.1F, 0.1F};
   const std::vector<float> y{0.1F, 0.1F, 0.5F, 0.0F, 0.0F, kNan, 0.1F};
   const std::vector<float> z{-1.0F, 0.0F, 0.5F, 0.0F, 0.0F, 0.0F, 9.0F};
-  const std::vector<float> ages{0.5F, 0.25F, 0.75F, 0, 0, 0, 0};
-  const Pillars pillars = make_pillars(x, y, z, ages);
+  const Pillars pillars = make_pillars(x, y, z);
   const std::int64_t middle = PillarGrid::kSide / 2;
   EXPECT_EQ(pillars.cell, (std::vector<std::int64_t>{middle * PillarGrid::kSide + middle,
                                                      (middle + 1) * PillarGrid::kSide + middle}));
@@ -48,7 +47,6 @@ TEST(Pillars, HoldThePointsOfTheirCell) {
   EXPECT_NEAR(second[3], 0.05 / 0.4, 1e-5) << "from the mean";
   EXPECT_NEAR(second[5], 0.5, 1e-5);
   EXPECT_NEAR(second[6], 0.0, 1e-4) << "from the pillar's middle";
-  EXPECT_FLOAT_EQ(second[8], 0.25F);
 }
 
 TEST(Pillars, TakeCrowdsEvenly) {
@@ -58,7 +56,7 @@ TEST(Pillars, TakeCrowdsEvenly) {
     y.push_back(10.0F);
     z.push_back(static_cast<float>(i) * 0.001F);
   }
-  const Pillars pillars = make_pillars(x, y, z, {});
+  const Pillars pillars = make_pillars(x, y, z);
   EXPECT_EQ(pillars.cell.size(), 1U);
   EXPECT_LE(pillars.owner.size(), static_cast<std::size_t>(PillarGrid::kMostPoints));
   EXPECT_GT(pillars.owner.size(), static_cast<std::size_t>(PillarGrid::kMostPoints / 2));
@@ -67,14 +65,7 @@ TEST(Pillars, TakeCrowdsEvenly) {
     highest = std::max(highest, pillars.features[i]);
   }
   EXPECT_GT(highest, 0.45F) << "also of the last";
-  EXPECT_TRUE(make_pillars({}, {}, {}, {}).cell.empty());
-}
-
-TEST(Pillars, AgesFollowTheTurn) {
-  EXPECT_NEAR(age_of(-10.0F, 0.01F), 1.0, 1e-3) << "the sweep begins at the rear, on the left";
-  EXPECT_NEAR(age_of(0.0F, 10.0F), 0.75, 1e-6);
-  EXPECT_NEAR(age_of(10.0F, 0.0F), 0.5, 1e-6);
-  EXPECT_NEAR(age_of(-10.0F, -0.01F), 0.0, 1e-3);
+  EXPECT_TRUE(make_pillars({}, {}, {}).cell.empty());
 }
 
 TEST(Anchors, DecodingUndoesEncoding) {
@@ -140,25 +131,6 @@ TEST(Anchors, OfOverlappingBoxesTheBestStays) {
   EXPECT_EQ(kept[1].score, 0.7);
 }
 
-TEST(TrainingSet, BoxesGoBackToWhereTheyWereMet) {
-  // The sensor drives 1 m a sweep: what stands still comes 1 m nearer. Ahead, half of a sweep
-  // passes until its end; at the rear's left all of it; a car that keeps pace stays.
-  Box ahead = car_at(20.0, 0.0, 0.0), left = car_at(-30.0, 0.5, 0.0), pace = car_at(8.0, 3.0, 0.0);
-  Box fresh = car_at(0.0, 9.0, 0.0);
-  left.length = 4.0;
-  pace.length = 4.1;
-  fresh.length = 4.2;
-  std::vector<Box> before{pace, ahead, left};
-  before[1].centre.x() += 1.0;
-  before[2].centre.x() += 1.0;
-  const auto met = boxes_as_met(std::vector<Box>{ahead, left, pace, fresh}, before);
-  ASSERT_EQ(met.size(), 4U);
-  EXPECT_NEAR(met[0].centre.x(), 20.5, 1e-3);
-  EXPECT_NEAR(met[1].centre.x(), -29.0, 0.01);
-  EXPECT_NEAR(met[2].centre.x(), 8.0, 1e-9);
-  EXPECT_EQ(met[3].points, 0) << "not seen before: to be passed over";
-}
-
 TEST(TrainingSet, ExamplesAreChangedAndStayTrue) {
   // A car's sides as points: whatever the change, its box holds them.
   LabelledSweep sweep;
@@ -171,7 +143,7 @@ TEST(TrainingSet, ExamplesAreChangedAndStayTrue) {
       sweep.z.push_back(-0.9F);
     }
   }
-  sweep.at_last = sweep.as_met = {car};
+  sweep.boxes = {car};
   Random random(5);
   double least = 1e9, most = -1e9;
   for (int i = 0; i < 40; ++i) {

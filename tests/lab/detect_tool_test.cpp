@@ -14,7 +14,7 @@ class Detect : public ToolTest {};
 TEST_F(Detect, FindsAndScoresCarsOfADrive) {
   ASSERT_EQ(run("simulate -o drive --sweeps 3").exit_status, 0);
   const Outcome outcome =
-      run("detect drive -o found --detector clusters --truth drive/boxes --boxes-at met "
+      run("detect drive -o found --detector clusters --truth drive/boxes "
           "--json");
   ASSERT_EQ(outcome.exit_status, 0) << outcome.err;
   EXPECT_TRUE(outcome.err.empty());

@@ -15,13 +15,10 @@ constexpr double kCell = 2.0 * static_cast<double>(PillarGrid::kSize);
 constexpr double kPositive = 0.55;
 constexpr double kNegative = 0.4;
 
-struct Size {
-  const char* label;
-  double length, width, height;
-  double z;  ///< of the middle, for a sensor 1.73 m above the road
-};
-constexpr std::array<Size, 2> kSizes{
-    {{"Car", 4.23, 1.75, 1.53, -0.96}, {"Van", 5.12, 1.94, 2.06, -0.70}}};
+constexpr double kVanHeight = 1.76;  // between the highest cars and the lowest vans
+
+// An anchor's size, between a car's and a van's, and its middle for a sensor 1.73 m above the road.
+constexpr double kLength = 4.4, kWidth = 1.8, kHeight = 1.6, kMiddle = -0.93;
 
 // An angle's representative in [-pi / 2, pi / 2): a box's outline has no front.
 double half_turn(double angle) {
@@ -53,7 +50,7 @@ int cell_index(double at) {
   return static_cast<int>(std::floor((at + reach) / kCell));
 }
 
-// Calls `visit(index)` for the anchors of a label within 3 m of a box.
+// Calls `visit(index)` for the anchors within 3 m of a box.
 template <class Visit>
 void near_anchors(const Box& box, const Visit& visit) {
   constexpr int kSpan = 5;
@@ -62,28 +59,49 @@ void near_anchors(const Box& box, const Visit& visit) {
   for (int r = std::max(0, row - kSpan); r <= std::min(kOutputSide - 1, row + kSpan); ++r) {
     for (int c = std::max(0, column - kSpan); c <= std::min(kOutputSide - 1, column + kSpan); ++c) {
       for (int which = 0; which < kAnchorsOfCell; ++which) {
-        const bool same = box.label == kSizes[static_cast<std::size_t>(which / 2)].label;
-        if (same) visit((r * kOutputSide + c) * kAnchorsOfCell + which);
+        visit((r * kOutputSide + c) * kAnchorsOfCell + which);
       }
     }
   }
 }
+
+constexpr double kSameThing = 0.5;  ///< IoU of boxes that vote about a box
+
+// The mean of boxes that say much the same, weighted by their scores.
+struct Votes {
+  double weight = 0.0;
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();
+  double turn = 0.0;  ///< from the best box's yaw, times weight
+
+  void add(const Box& best, const Box& box) {
+    weight += box.score;
+    centre += box.score * box.centre;
+    size += box.score * Eigen::Vector3d(box.length, box.width, box.height);
+    turn += box.score * half_turn(box.yaw - best.yaw);
+  }
+  void decide(Box& best) const {
+    best.centre = centre / weight;
+    best.length = size.x() / weight;
+    best.width = size.y() / weight;
+    best.height = size.z() / weight;
+    best.yaw += turn / weight;
+  }
+};
 
 }  // namespace
 
 Box anchor(int index) {
   const int which = index % kAnchorsOfCell;
   const int cell = index / kAnchorsOfCell;
-  const Size& size = kSizes[static_cast<std::size_t>(which / 2)];
   const double reach = static_cast<double>(PillarGrid::kReach);
   Box box;
-  box.label = size.label;
   const int row = cell / kOutputSide, column = cell % kOutputSide;
-  box.centre = {(column + 0.5) * kCell - reach, (row + 0.5) * kCell - reach, size.z};
-  box.length = size.length;
-  box.width = size.width;
-  box.height = size.height;
-  box.yaw = which % 2 == 0 ? 0.0 : 0.5 * kPi;
+  box.centre = {(column + 0.5) * kCell - reach, (row + 0.5) * kCell - reach, kMiddle};
+  box.length = kLength;
+  box.width = kWidth;
+  box.height = kHeight;
+  box.yaw = which == 0 ? 0.0 : 0.5 * kPi;
   return box;
 }
 
@@ -93,6 +111,7 @@ AnchorTargets assign_targets(std::span<const Box> boxes, int min_points) {
   std::vector<double> overlap(kAnchors, 0.0);
   std::vector<int> owner(kAnchors, -1);
   for (std::size_t b = 0; b < boxes.size(); ++b) {
+    if (boxes[b].label != "Car" && boxes[b].label != "Van") continue;
     const bool counts = boxes[b].points < 0 || boxes[b].points >= min_points;
     int best = -1;
     double most = 0.0;
@@ -140,6 +159,7 @@ Box decode_box(int index, std::span<const float, kResiduals> residuals, bool bac
   box.length *= scale(3);
   box.width *= scale(4);
   box.height *= scale(5);
+  if (box.height > kVanHeight) box.label = "Van";
   const double yaw = box.yaw + half_turn(at(6)) + (backward ? kPi : 0.0);
   box.yaw = yaw - 2.0 * kPi * std::floor(yaw / (2.0 * kPi) + 0.5);
   box.score = score;
@@ -150,11 +170,19 @@ std::vector<Box> suppress_overlaps(std::vector<Box> boxes, double most) {
   std::stable_sort(boxes.begin(), boxes.end(),
                    [](const Box& a, const Box& b) { return a.score > b.score; });
   std::vector<Box> kept;
-  for (Box& box : boxes) {
-    const bool is_free = std::all_of(
-        kept.begin(), kept.end(), [&](const Box& better) { return bev_iou(better, box) <= most; });
-    if (is_free) kept.push_back(std::move(box));
+  std::vector<Votes> votes;
+  for (const Box& box : boxes) {
+    const auto better = std::find_if(kept.begin(), kept.end(), [&](const Box& other) {
+      return bev_iou(other, box) > most;
+    });
+    const auto k = static_cast<std::size_t>(better - kept.begin());
+    if (better == kept.end()) {
+      kept.push_back(box);
+      votes.emplace_back();
+    }
+    if (bev_iou(kept[k], box) >= kSameThing) votes[k].add(kept[k], box);
   }
+  for (std::size_t k = 0; k < kept.size(); ++k) votes[k].decide(kept[k]);
   return kept;
 }
 

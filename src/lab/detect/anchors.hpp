@@ -1,5 +1,5 @@
-// What PointPillars' network is asked for: at each cell of its output, how far boxes of usual sizes
-// (anchors) are from true ones (Lang et al., PointPillars, CVPR 2019, 2.3 and 3.2). Knows no
+// What PointPillars' network is asked for: at each cell of its output, how far boxes of a usual
+// size (anchors) are from true ones (Lang et al., PointPillars, CVPR 2019, 2.3 and 3.2). Knows no
 // network.
 #pragma once
 
@@ -14,7 +14,7 @@
 namespace sweepcast::lab {
 
 inline constexpr int kOutputSide = PillarGrid::kSide / 2;  ///< cells in a row and in a column
-inline constexpr int kAnchorsOfCell = 4;  ///< car along x, car along y, van along x, van along y
+inline constexpr int kAnchorsOfCell = 2;                   ///< along x, along y
 inline constexpr int kAnchors = kOutputSide * kOutputSide * kAnchorsOfCell;
 inline constexpr int kResiduals = 7;
 
@@ -24,7 +24,7 @@ inline constexpr int kResiduals = 7;
 
 /// What the network is to say of one sweep.
 struct AnchorTargets {
-  /// Of each anchor: 1 where it lies on a box of its label, 0 where on none, -1 in between.
+  /// Of each anchor: 1 where it lies on a car or van, 0 where on none, -1 in between.
   std::vector<float> state;
   std::vector<std::int64_t> positive;  ///< the anchors of state 1
   std::vector<float> residuals;        ///< kResiduals of each of them
@@ -36,7 +36,7 @@ struct AnchorTargets {
 /// neither: anchors on them do not count.
 [[nodiscard]] AnchorTargets assign_targets(std::span<const Box> boxes, int min_points);
 
-/// What the network says of an anchor, as a box.
+/// What the network says of an anchor, as a box: a car, or, where it is over 1.76 m high, a van.
 [[nodiscard]] Box decode_box(int index, std::span<const float, kResiduals> residuals, bool backward,
                              double score);
 

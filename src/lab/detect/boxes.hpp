@@ -3,7 +3,6 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -25,12 +24,6 @@ struct Box {
   double yaw = 0.0;    ///< radians from the frame's x axis, counter-clockwise about z
   int points = -1;     ///< that were measured on it; -1: not counted
   double score = 1.0;  ///< of a box that was found, 0 to 1
-};
-
-/// Of which moment boxes are: a spinning sensor meets things one after the other, while both move.
-enum class BoxTime : std::uint8_t {
-  as_met,   ///< each where its points lie, as in KITTI's labels; also of sweeps that are deskewed
-  at_last,  ///< all where things were at the sweep's last firing, as `simulate` writes them
 };
 
 /// Reads what `simulate` and `detect` write: a line a box, `label x y z length width height yaw

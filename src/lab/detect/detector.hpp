@@ -28,12 +28,10 @@ class Detector {
 /// car's size to each. docs/detection.md has the steps.
 [[nodiscard]] Result<std::unique_ptr<Detector>> make_cluster_detector();
 
-/// PointPillars (Lang et al., CVPR 2019) with the weights that `train_pillars` wrote. Boxes are of
-/// the moment that `time` says: `at_last` is learnt from `simulate`, whose sensor turns clockwise,
-/// begins at the rear and drives at 10 m/s; of other sweeps take `as_met`.
+/// PointPillars (Lang et al., CVPR 2019) with the weights that `train_pillars` wrote.
 /// Errors: not_found, io, corrupt, truncated (the weights' file), unsupported (a build without
 /// libtorch, weights of another network).
 [[nodiscard]] Result<std::unique_ptr<Detector>> make_pillar_detector(
-    const std::filesystem::path& weights, BoxTime time = BoxTime::at_last);
+    const std::filesystem::path& weights);
 
 }  // namespace sweepcast::lab

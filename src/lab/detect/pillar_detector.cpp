@@ -37,18 +37,12 @@ std::vector<Box> boxes_of(const PillarOutput& output) {
 
 class PillarDetector : public Detector {
  public:
-  PillarDetector(PillarNetwork network, BoxTime time) : network_(std::move(network)), time_(time) {
+  explicit PillarDetector(PillarNetwork network) : network_(std::move(network)) {
     network_->eval();
   }
 
   Result<std::vector<Box>> detect(const PointCloud& cloud) override try {
-    std::vector<float> ages;
-    if (time_ == BoxTime::at_last) {
-      for (std::size_t i = 0; i < cloud.size(); ++i) {
-        ages.push_back(age_of(cloud.x[i], cloud.y[i]));
-      }
-    }
-    const Pillars pillars = make_pillars(cloud.x, cloud.y, cloud.z, ages);
+    const Pillars pillars = make_pillars(cloud.x, cloud.y, cloud.z);
     if (pillars.cell.empty()) return std::vector<Box>();
     const torch::NoGradGuard frozen;
     const PillarOutput output = network_->forward(make_batch(std::span(&pillars, 1)));
@@ -62,16 +56,14 @@ class PillarDetector : public Detector {
 
  private:
   PillarNetwork network_;
-  BoxTime time_;
 };
 
 }  // namespace
 
-Result<std::unique_ptr<Detector>> make_pillar_detector(const std::filesystem::path& weights,
-                                                       BoxTime time) try {
+Result<std::unique_ptr<Detector>> make_pillar_detector(const std::filesystem::path& weights) try {
   PillarNetwork network;
   if (Status read = read_weights(weights, network); !read) return tl::unexpected(read.error());
-  return std::make_unique<PillarDetector>(std::move(network), time);
+  return std::make_unique<PillarDetector>(std::move(network));
 } catch (const std::exception& error) {
   return fail(ErrorCode::limit,
               std::string("detect: libtorch gave up (") + error.what() + "); give it more memory");

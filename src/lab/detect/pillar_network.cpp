@@ -21,7 +21,7 @@ namespace {
 
 namespace nn = torch::nn;
 
-constexpr std::int64_t kPillarChannels = 32;
+constexpr std::int64_t kPillarChannels = 64;
 constexpr std::int64_t kUpChannels = 32;
 constexpr int kHeadChannels = kAnchorsOfCell * (1 + kResiduals + 2);
 
@@ -127,7 +127,7 @@ std::vector<torch::Tensor> tensors_of(PillarNetwork& network) {
 // The head of a weights' file.
 struct WeightsHead {
   std::array<char, 8> magic{'S', 'W', 'P', 'I', 'L', 'L', 'A', 'R'};
-  std::uint32_t version = 1;
+  std::uint32_t version = 2;
   std::uint32_t crc32 = 0;  ///< of the numbers
   std::uint64_t count = 0;  ///< of the numbers
 };

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 namespace sweepcast::lab {
@@ -35,13 +34,7 @@ struct Placed {
 
 }  // namespace
 
-float age_of(float x, float y) {
-  constexpr float kTurn = 2.0F * std::numbers::pi_v<float>;
-  return std::clamp(0.5F + std::atan2(y, x) / kTurn, 0.0F, 1.0F);
-}
-
-Pillars make_pillars(std::span<const float> x, std::span<const float> y, std::span<const float> z,
-                     std::span<const float> ages) {
+Pillars make_pillars(std::span<const float> x, std::span<const float> y, std::span<const float> z) {
   std::vector<Placed> placed;
   placed.reserve(x.size());
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -76,7 +69,7 @@ Pillars make_pillars(std::span<const float> x, std::span<const float> y, std::sp
           pillars.features.end(),
           {x[p] / Grid::kReach, y[p] / Grid::kReach, z[p] / 2.0F, (x[p] - mean[0]) / Grid::kSize,
            (y[p] - mean[1]) / Grid::kSize, z[p] - mean[2], (x[p] - middle_x) / Grid::kSize,
-           (y[p] - middle_y) / Grid::kSize, ages.empty() ? 0.0F : ages[p]});
+           (y[p] - middle_y) / Grid::kSize});
     }
     pillars.cell.push_back(cell);
     begin = end;

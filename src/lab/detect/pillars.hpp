@@ -22,9 +22,9 @@ struct PillarGrid {
 };
 
 /// Numbers that the network gets of a point: x, y, z; offsets from the mean of its pillar's points
-/// (3); from the pillar's middle (2); and `age`. Lengths are scaled so that most lie within 1. The
-/// paper has intensity in place of age; coded sweeps often come without it.
-inline constexpr int kPointFeatures = 9;
+/// (3); from the pillar's middle (2). Lengths are scaled so that most lie within 1. The paper has
+/// intensity beside them; coded sweeps often come without it.
+inline constexpr int kPointFeatures = 8;
 
 /// Points by pillar.
 struct Pillars {
@@ -33,13 +33,8 @@ struct Pillars {
   std::vector<std::int64_t> cell;   ///< of each pillar: row * kSide + column, rising
 };
 
-/// Age of a point: the share of a sweep, 0 to 1, that passes from its firing to the last one, of a
-/// sensor that turns clockwise and begins at the rear. Of `as_met` sweeps it is 0.
-[[nodiscard]] float age_of(float x, float y);
-
-/// Sorts points into pillars; those outside the grid, or not finite, are passed over. `ages` is as
-/// long as `x`, or empty: all 0.
+/// Sorts points into pillars; those outside the grid, or not finite, are passed over.
 [[nodiscard]] Pillars make_pillars(std::span<const float> x, std::span<const float> y,
-                                   std::span<const float> z, std::span<const float> ages);
+                                   std::span<const float> z);
 
 }  // namespace sweepcast::lab

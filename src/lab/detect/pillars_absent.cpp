@@ -15,8 +15,7 @@ tl::unexpected<Error> no_torch(const char* command) {
 
 }  // namespace
 
-Result<std::unique_ptr<Detector>> make_pillar_detector(const std::filesystem::path& /*weights*/,
-                                                       BoxTime /*time*/) {
+Result<std::unique_ptr<Detector>> make_pillar_detector(const std::filesystem::path& /*weights*/) {
   return no_torch("detect");
 }
 

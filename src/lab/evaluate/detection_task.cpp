@@ -3,7 +3,6 @@
 #include <array>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -23,22 +22,16 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kEvery = 2;
 
-/// Where true boxes lie in a drive, and the moment whose boxes they are.
-struct TruthFolder {
-  const char* name;
-  BoxTime time;
-};
-constexpr std::array<TruthFolder, 2> kFolders{
-    {{"boxes", BoxTime::at_last}, {"label_2", BoxTime::as_met}}};
+/// Where true boxes lie in a drive: as `simulate` writes them, and as KITTI has them.
+constexpr std::array<const char*, 2> kFolders{"boxes", "label_2"};
 
 /// What all settings share.
 struct DetectionSetup {
   std::vector<Labels> truth;  ///< [sweep]; empty for sweeps that are not taken
   fs::path weights;           ///< empty: the detector without
-  BoxTime time = BoxTime::at_last;
 
   [[nodiscard]] Result<std::unique_ptr<Detector>> detector() const {
-    return weights.empty() ? make_cluster_detector() : make_pillar_detector(weights, time);
+    return weights.empty() ? make_cluster_detector() : make_pillar_detector(weights);
   }
 };
 
@@ -101,30 +94,31 @@ void add(const Labels& labels, ContentHash& hash) {
   hash.add(labels.boxes.size());
 }
 
-std::optional<TruthFolder> truth_folder(const fs::path& drive) {
-  for (const TruthFolder& folder : kFolders) {
+/// Empty where a drive has none.
+fs::path truth_folder(const fs::path& drive) {
+  for (const char* folder : kFolders) {
     std::error_code error;
-    if (fs::is_directory(drive / folder.name, error)) return folder;
+    if (fs::is_directory(drive / folder, error)) return drive / folder;
   }
-  return std::nullopt;
+  return {};
 }
 
 }  // namespace
 
 Result<std::unique_ptr<const Task>> make_detection_task(const DriveFiles& drive,
                                                         const TaskOptions& options) {
-  const auto folder = truth_folder(drive.folder);
-  if (!folder) {
+  const fs::path folder = truth_folder(drive.folder);
+  if (folder.empty()) {
     return fail(ErrorCode::not_found,
                 drive.folder.string() +
                     ": has no true boxes to score against; put a file of them for each sweep into "
                     "boxes/, as `sweepcast simulate` does, or into label_2/, as KITTI does");
   }
-  DetectionSetup setup{std::vector<Labels>(drive.sweeps.size()), options.weights, folder->time};
+  DetectionSetup setup{std::vector<Labels>(drive.sweeps.size()), options.weights};
   const std::size_t every = options.full ? 1 : kEvery;
   ContentHash hash;
   for (std::size_t i = 0; i < setup.truth.size(); i += every) {
-    auto labels = read_labels(drive.folder / folder->name, drive.sweeps[i].stem().string());
+    auto labels = read_labels(folder, drive.sweeps[i].stem().string());
     if (!labels) return tl::unexpected(std::move(labels.error()));
     add(*labels, hash);
     setup.truth[i] = std::move(*labels);

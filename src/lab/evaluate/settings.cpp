@@ -44,7 +44,7 @@ class UncodedDrive : public Peer {
 /// From this ratio on beam leaves points out, as a rule, which a decoder may fill in.
 constexpr double kThinned = 100.0;
 
-Status add_beam(const DriveFiles& drive, SettingChoice& choice) {
+Status add_beam(const DriveFiles& drive, const std::vector<double>& ratios, SettingChoice& choice) {
   PointCloud first;
   if (Status read = read_cloud(drive.sweeps.front(), first); !read) return read;
   EncoderOptions finest;
@@ -53,9 +53,6 @@ Status add_beam(const DriveFiles& drive, SettingChoice& choice) {
   auto peer_at_bound = make_sweepcast_peer(finest, fmt::format("E {} m", kFinestErrorM));
   if (!peer_at_bound) return tl::unexpected(std::move(peer_at_bound.error()));
   choice.peers.push_back(std::move(*peer_at_bound));
-  std::vector<double> ratios(kRatios.begin(), kRatios.end());
-  ratios.insert(ratios.end(), kFurtherRatios.begin(), kFurtherRatios.end());
-  std::sort(ratios.begin(), ratios.end());
   for (const bool fill : {false, true}) {
     for (const double ratio : ratios) {
       if (fill && ratio < kThinned) continue;
@@ -117,7 +114,7 @@ Result<SettingChoice> make_settings(const SettingOptions& options, const DriveFi
   for (const std::string& codec : options.codecs) {
     Status added;
     if (codec == "beam") {
-      added = add_beam(drive, choice);
+      added = add_beam(drive, options.ratios, choice);
     } else if (codec == "rcpcc") {
       added = add_rcpcc(choice);
     } else {

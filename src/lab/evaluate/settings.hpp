@@ -15,16 +15,16 @@ namespace sweepcast::lab {
 /// The name of the drive as it is, 16 bytes a point.
 inline constexpr std::string_view kOriginal = "original";
 
-/// Ratios that codecs which can aim always have.
+/// Ratios at which codecs are compared.
 inline constexpr std::array<double, 5> kRatios{30, 60, 100, 200, 300};
-/// And further ones, so that curves go on to 400.
-inline constexpr std::array<double, 2> kFurtherRatios{150, 400};
 /// Beam's finest setting, a bound of errors: metres; a ratio of about 8 on a sensor of 64 beams.
 inline constexpr double kFinestErrorM = 0.002;
 
 struct SettingOptions {
   std::vector<std::string> codecs{"beam", "rcpcc"};  ///< of ours
   std::vector<std::string> peers{"all"};             ///< names of `peer_kinds()`, "all", or none
+  /// Ratios that beam is aimed at, each 1 or more; by default those of the comparison and two more.
+  std::vector<double> ratios{30, 60, 100, 150, 200, 300, 400};
   /// Settings of a peer's ladder, spread over it; 0: all of them.
   std::size_t settings_each = 5;
 };

@@ -235,24 +235,28 @@ std::vector<Point> Drive::Parts::cast(int index, const Solid& moving) const {
   return points;
 }
 
+// Each box as its thing stood when it was met: at the middle one of its points' times.
 std::vector<SimulatedBox> Drive::Parts::boxes(const std::vector<Point>& points, int index) const {
-  std::map<std::uint16_t, int> counts;
+  std::map<std::uint16_t, std::vector<std::int64_t>> times;
   for (const Point& p : points) {
-    if (p.object != 0) ++counts[p.object];
+    if (p.object != 0) times[p.object].push_back(p.time_ns);
   }
-  const std::int64_t last_ns = last_firing_ns(index);
-  const Pose eye = sensor_pose(last_ns);
-  const double seconds = static_cast<double>(last_ns) / kSecond;
+  const std::int64_t begin_ns = sensor.time_ns(sensor.first_firing(index));
   std::vector<SimulatedBox> found;
-  for (const auto& [object, count] : counts) {
+  for (auto& [object, met] : times) {
+    const auto middle = met.begin() + static_cast<std::ptrdiff_t>(met.size() / 2);
+    std::nth_element(met.begin(), middle, met.end());
+    const std::int64_t met_ns = begin_ns + *middle;
+    const double seconds = static_cast<double>(met_ns) / kSecond;
     const std::size_t number = object - std::size_t{1};
     const bool parked = number < town.parked.size();
     const Mover* mover = parked ? nullptr : &movers[number - town.parked.size()];
     const Extent& extent = parked ? town.parked[number].extent : mover->extent;
     const Pose at = parked ? town.parked[number].pose : mover->at(seconds, loop, town.terrain);
-    const Pose seen = at.relative_to(eye);
+    const Pose seen = at.relative_to(sensor_pose(met_ns));
     found.push_back({extent.kind, seen.apply({0.0, 0.0, 0.5 * extent.height}), extent.length,
-                     extent.width, extent.height, arc_tangent(seen.x.y, seen.x.x), count});
+                     extent.width, extent.height, arc_tangent(seen.x.y, seen.x.x),
+                     static_cast<int>(met.size())});
   }
   return found;
 }

@@ -29,8 +29,8 @@ struct SimulateOptions {
   bool dropouts = true;          ///< false: every beam that meets a surface returns
 };
 
-/// A car, van or pedestrian that at least one point lies on, in the sensor's frame at the sweep's
-/// last firing, as it stood then.
+/// A car, van or pedestrian that at least one point lies on: where it stood, seen from the sensor's
+/// frame, when the beams met it, so that the raw sweep's points lie on it.
 struct SimulatedBox {
   std::string_view kind;
   Vec3 middle;  ///< of the box, not of its floor
