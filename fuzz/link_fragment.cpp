@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <cstdlib>
 #include <span>
+#include <vector>
 
 #include "link/feedback.hpp"
 #include "link/reassembly.hpp"
+#include "link/sender_report.hpp"
 #include "sweepcast/decoder.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -26,6 +28,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       const auto plain = rest.first(std::min(length, rest.size()));
       rest = rest.subspan(plain.size());
       (void)read_report(plain);
+      if (const auto told = read_sender_report(plain)) {
+        std::vector<std::byte> again;
+        write_sender_report(told->number, told->report, again);
+        if (!read_sender_report(again)) std::abort();
+      }
       if (const auto fragment = read_fragment(plain)) {
         (void)reassembler.add(*fragment, now, ready);
       }

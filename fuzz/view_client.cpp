@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -88,7 +89,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       ask(rest, recording);
       break;
     case 'p': {
-      PageClient client(show, &recording, now);
+      PageClient client(show, &recording, now, [](const std::string& robot, auto level) {
+        if (level && *level > 5) std::abort();
+        return robot == "rover";
+      });
       talk(client, rest, now);
       break;
     }

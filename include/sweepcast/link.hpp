@@ -56,8 +56,9 @@ struct LinkState {
 
 /// What the sweeps of one interval may cost, all sensors together.
 struct LinkBudget {
-  std::optional<std::size_t> level;  ///< of the codec's ladder, where the strategy chose one; else
-  std::size_t sweep_bytes = 8000;    ///< so many bytes; 0: as many as there are
+  /// Of the codec's ladder, where the strategy or the receiver's operator chose one; else
+  std::optional<std::size_t> level;
+  std::size_t sweep_bytes = 8000;  ///< so many bytes; 0: as many as there are
 };
 
 struct SenderOptions {
@@ -68,6 +69,7 @@ struct SenderOptions {
   std::string strategy = "budget";  ///< or another of docs/rate.md: paper, bola, mpc, fixed:L
   CodecId codec = CodecId::beam;    ///< of the frames: "budget" is another one with each
   double rate_hz = 10.0;            ///< sweeps a second of each sensor, 0.1 to 1000
+  bool allow_override = false;      ///< the receiver may ask for a level in the strategy's place
 };
 
 /// A frame to send.
@@ -79,6 +81,22 @@ struct OutgoingSweep {
   /// Layers that end beyond so many bytes are left out, but for the first; 0: none are.
   std::size_t most_bytes = 0;
   std::optional<std::size_t> level{};  ///< that it was encoded at, where it is one of the ladder's
+};
+
+/// What a sender tells its receiver of itself, twice a second. Counters are since its start.
+struct SenderReport {
+  std::optional<std::size_t> level;  ///< of the newest sweep; none where it is no ladder's level
+  std::size_t queued_frames = 0;     ///< not fully sent
+  std::size_t queued_bytes = 0;
+  std::uint64_t sweeps = 0;   ///< to send
+  std::uint64_t sent = 0;     ///< all layers left in time
+  std::uint64_t cut = 0;      ///< only some did
+  std::uint64_t dropped = 0;  ///< none did
+  /// Mean QoE of a sweep (docs/rate.md), of each sensor's last 100; none where sweeps are no
+  /// ladder's levels.
+  std::optional<double> qoe;
+  bool can_override = false;                  ///< it obeys when it is asked for a level
+  std::optional<std::size_t> override_level;  ///< that it was asked for and sends; none: its own
 };
 
 /// Counters since the start, and how things are now.
@@ -97,6 +115,7 @@ struct SenderStatus {
   LinkState link;
   LinkBudget budget;
   double bytes_per_second = 0;  ///< the pace at which packets leave, everything counted
+  SenderReport report;          ///< what the receiver is told
   std::string error;  ///< why the last connection ended or failed; empty while all is well
 };
 
@@ -174,6 +193,13 @@ struct ReceiverStatus {
   double newest_age_s = 0;  ///< of the sweep that was delivered last, when it was
 };
 
+/// A robot that has connected since the receiver's start.
+struct RobotStatus {
+  std::string robot;
+  bool connected = false;
+  std::optional<SenderReport> report;  ///< the newest; none where its sender tells nothing
+};
+
 /// Receives from many robots.
 class Receiver {
  public:
@@ -187,6 +213,13 @@ class Receiver {
 
   [[nodiscard]] std::uint16_t port() const noexcept;
   [[nodiscard]] ReceiverStatus status() const;
+  /// By name.
+  [[nodiscard]] std::vector<RobotStatus> robots() const;
+
+  /// Asks a robot to send all sweeps at a level, 0 to 5, or, with none, as its strategy chooses.
+  /// Holds until it is asked for something else, across connections, while this receiver lives.
+  /// Errors: invalid_argument (no such level; no robot that is connected and obeys).
+  [[nodiscard]] Status ask_level(std::string_view robot, std::optional<std::size_t> level);
 
  private:
   struct State;

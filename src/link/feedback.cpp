@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/bytes.hpp"
+#include "link/sender_report.hpp"
 
 namespace sweepcast::link {
 
@@ -26,6 +27,7 @@ void write_report(const Report& report, std::vector<std::byte>& plain) {
     out.put(stream.sweep);
     out.put(stream.model);
   }
+  if (report.wish) put_level(out, report.wish->level);
 }
 
 std::optional<Report> read_report(std::span<const std::byte> plain) {
@@ -50,6 +52,11 @@ std::optional<Report> read_report(std::span<const std::byte> plain) {
     stream.model = in.get<std::uint32_t>();
     if (stream.stream >= kMostStreams) return std::nullopt;
     report.streams.push_back(stream);
+  }
+  if (in.ok() && !in.at_end()) {
+    LevelWish wish;
+    if (!get_level(in, wish.level)) return std::nullopt;
+    report.wish = wish;
   }
   if (!in.ok() || !in.at_end()) return std::nullopt;
   return report;

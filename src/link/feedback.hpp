@@ -1,4 +1,4 @@
-// Reports: what a receiver tells a sender every 50 ms. docs/format-link.md has the bytes.
+// Feedback: what a receiver tells a sender every 50 ms. docs/format-link.md has the bytes.
 #pragma once
 
 #include <array>
@@ -24,6 +24,13 @@ struct StreamReport {
   std::uint32_t model = 0;  ///< crc32 of the sensor's model that the receiver holds; 0: none
 };
 
+/// What an operator asks for: a level, or, with none, what the sender's strategy chooses.
+struct LevelWish {
+  std::optional<std::size_t> level;
+
+  [[nodiscard]] bool operator==(const LevelWish&) const = default;
+};
+
 /// One report. Times are microseconds, 32 bits.
 struct Report {
   std::uint32_t number = 0;   ///< counts a connection's reports, from 1
@@ -37,6 +44,7 @@ struct Report {
   std::uint32_t busy_us = 0;    ///< see `ArrivalMeter`
   std::uint32_t busy_bytes = 0;
   std::vector<StreamReport> streams;
+  std::optional<LevelWish> wish;  ///< only to senders whose own reports said that they obey
 };
 
 void write_report(const Report& report, std::vector<std::byte>& plain);

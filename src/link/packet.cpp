@@ -96,7 +96,8 @@ PacketFault PacketOpener::open(std::span<const std::byte> packet,
   if (packet.size() < kPacketHeadBytes + kTagBytes) return PacketFault::truncated;
   if (packet.size() > kMostPacketBytes) return PacketFault::oversized;
   ByteReader in(packet);
-  if (in.get<std::uint8_t>() != static_cast<std::uint8_t>(type_)) return PacketFault::malformed;
+  const auto type = static_cast<PacketType>(in.get<std::uint8_t>());
+  if (std::find(types_.begin(), types_.end(), type) == types_.end()) return PacketFault::malformed;
   const auto counter = in.get<std::uint64_t>();
   if (!window_.is_fresh(counter)) return PacketFault::replayed;
   const auto sealed = packet.subspan(kPacketHeadBytes);
@@ -107,6 +108,7 @@ PacketFault PacketOpener::open(std::span<const std::byte> packet,
     return PacketFault::forged;
   }
   counter_ = counter;
+  type_ = type;
   window_.mark(counter);  // only now: a forged packet must not shut out a true one
   plain = plain_;
   return PacketFault::none;

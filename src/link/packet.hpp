@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <span>
 #include <vector>
@@ -22,6 +23,7 @@ enum class PacketType : std::uint8_t {
   hello = 1,     ///< in the clear: a challenge
   fragment = 2,  ///< sealed; sender to receiver
   feedback = 3,  ///< sealed; receiver to sender
+  report = 4,    ///< sealed; sender to receiver, see `SenderReport`
 };
 
 /// Why a packet was refused.
@@ -63,19 +65,22 @@ class PacketSealer {
 /// Checks and decrypts them.
 class PacketOpener {
  public:
-  /// Accepts packets of one type.
-  PacketOpener(const LinkSecret& key, PacketType type) : key_(key), type_(type) {}
+  /// Accepts packets of these types: those of its direction.
+  PacketOpener(const LinkSecret& key, std::initializer_list<PacketType> types)
+      : key_(key), types_(types) {}
 
   /// `plain` is valid until the next call; empty where there is a fault.
   [[nodiscard]] PacketFault open(std::span<const std::byte> packet,
                                  std::span<const std::byte>& plain);
   /// Of the packet that was opened last.
   [[nodiscard]] std::uint64_t counter() const { return counter_; }
+  [[nodiscard]] PacketType type() const { return type_; }
 
  private:
   LinkSecret key_;
-  PacketType type_;
+  std::vector<PacketType> types_;
   ReplayWindow window_;
+  PacketType type_ = PacketType::hello;
   std::uint64_t counter_ = 0;
   std::vector<std::byte> plain_;
 };

@@ -5,6 +5,7 @@
 
 #include "codec/frame_edit.hpp"
 #include "core/crc32.hpp"
+#include "link/sender_report.hpp"
 
 namespace sweepcast::link {
 
@@ -18,7 +19,8 @@ void Peer::take(std::span<const std::byte> packet, Microseconds now) {
     const auto theirs = read_hello(packet);
     if (!theirs) return;  // a fragment may overtake a hello that was lost and is repeated
     const SessionKeys keys = derive_session(key_, *theirs, challenge_);
-    opener_.emplace(keys.to_receiver, PacketType::fragment);
+    const auto types = {PacketType::fragment, PacketType::report};
+    opener_.emplace(keys.to_receiver, types);
     sealer_.emplace(keys.to_sender);
     return;
   }
@@ -39,10 +41,23 @@ void Peer::take(std::span<const std::byte> packet, Microseconds now) {
       return;
   }
   authentic_ = true;
-  if (const auto fragment = read_fragment(plain)) {
+  if (opener_->type() == PacketType::report) {
+    take_sender_report(plain);
+  } else if (const auto fragment = read_fragment(plain)) {
     take_fragment(*fragment, packet.size(), now);
   } else {
     ++counts_.malformed;
+  }
+}
+
+void Peer::take_sender_report(std::span<const std::byte> plain) {
+  const auto told = read_sender_report(plain);
+  if (!told) {
+    ++counts_.malformed;
+  } else if (told->number > sender_reports_) {
+    sender_reports_ = told->number;
+    obeys_ = told->report.can_override;
+    sender_report_ = told->report;
   }
 }
 
@@ -132,7 +147,11 @@ PeerCounts Peer::take_counts() {
   return std::exchange(counts_, {});
 }
 
-std::span<const std::byte> Peer::report(Microseconds now) {
+std::optional<SenderReport> Peer::take_sender_report() {
+  return std::exchange(sender_report_, std::nullopt);
+}
+
+std::span<const std::byte> Peer::report(Microseconds now, LevelWish wish) {
   if (!sealer_ || now - reported_ < kReportInterval) return {};
   reported_ = now;
   ++report_.number;
@@ -144,6 +163,7 @@ std::span<const std::byte> Peer::report(Microseconds now) {
   for (const Stream& stream : streams_) {
     if (stream.report.sweep != 0) report_.streams.push_back(stream.report);
   }
+  report_.wish = obeys_ ? std::optional(wish) : std::nullopt;
   write_report(report_, plain_);
   report_.fragments = 0;
   return sealer_->seal(PacketType::feedback, plain_);

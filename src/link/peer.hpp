@@ -48,8 +48,11 @@ class Peer {
   /// The sweeps that arrived since the last call.
   [[nodiscard]] std::vector<ArrivedSweep> take_arrived();
   [[nodiscard]] PeerCounts take_counts();
-  /// The packet to send now; empty where the next report is not yet due.
-  [[nodiscard]] std::span<const std::byte> report(Microseconds now);
+  /// The newest of the sender's own reports, if one came since the last call.
+  [[nodiscard]] std::optional<SenderReport> take_sender_report();
+  /// The packet to send now; empty where the next report is not yet due. It carries the wish where
+  /// the sender has said that it obeys.
+  [[nodiscard]] std::span<const std::byte> report(Microseconds now, LevelWish wish = {});
 
   /// Tells the transport's round trip; the least one counts.
   void set_round_trip(double seconds);
@@ -57,6 +60,7 @@ class Peer {
   [[nodiscard]] double age_of(const ArrivedSweep& sweep, Microseconds now) const;
 
  private:
+  void take_sender_report(std::span<const std::byte> plain);
   void take_fragment(const Fragment& fragment, std::size_t packet_bytes, Microseconds now);
   void finish(std::vector<ReadySweep>& ready);
   [[nodiscard]] bool restore_frame(const ReadySweep& ready, ArrivedSweep& sweep);
@@ -78,6 +82,9 @@ class Peer {
   std::vector<ArrivedSweep> arrived_;
   PeerCounts counts_;
   Report report_;
+  std::optional<SenderReport> sender_report_;  ///< since it was last asked
+  std::uint32_t sender_reports_ = 0;           ///< number of the newest
+  bool obeys_ = false;
   ArrivalMeter meter_;
   Microseconds reported_ = 0;
   Microseconds newest_at_ = 0;  ///< when the newest fragment arrived

@@ -8,6 +8,7 @@
 #include "link/listening.hpp"
 #include "link/peer.hpp"
 #include "link/srt_socket.hpp"
+#include "rate/qoe.hpp"
 #include "sweepcast/link.hpp"
 
 namespace sweepcast {
@@ -28,6 +29,13 @@ struct Connection {
   bool broken = false;
 };
 
+/// A robot that has connected.
+struct Robot {
+  bool connected = false;  ///< and authenticated
+  std::optional<SenderReport> report;
+  LevelWish wish;
+};
+
 }  // namespace
 
 struct Receiver::State {
@@ -46,6 +54,7 @@ struct Receiver::State {
   mutable std::mutex mutex;                 // guards what follows
   std::map<std::string, std::size_t> open;  ///< connections of each robot
   std::uint64_t let_in = 0;                 ///< by the listen callback
+  std::map<std::string, Robot, std::less<>> robots;
   ReceiverStatus status;
 
   std::thread thread;
@@ -57,6 +66,7 @@ struct Receiver::State {
   void receive_from(Connection& connection);
   void tend(Microseconds now);
   void deliver(Peer& peer);
+  [[nodiscard]] LevelWish wish_for(const Peer& peer) const;
   void close_broken();
   [[nodiscard]] const LinkKey* find_key(std::string_view robot) const;
   [[nodiscard]] bool let_in_peer(SRTSOCKET socket, std::string_view robot);
@@ -191,7 +201,7 @@ void Receiver::State::tend(Microseconds now) {
     receive_from(connection);  // SRT tells of no event where a packet fills a gap
     peer.expire(now);
     deliver(peer);
-    if (const auto report = peer.report(now); !report.empty()) {
+    if (const auto report = peer.report(now, wish_for(peer)); !report.empty()) {
       if (srt_send_packet(number, report) == SrtOutcome::broken) connection.broken = true;
     }
     if (!peer.is_authentic() && now - peer.began() > kAuthentication) connection.broken = true;
@@ -199,9 +209,22 @@ void Receiver::State::tend(Microseconds now) {
   close_broken();
   const std::scoped_lock lock(mutex);
   status.buffered_bytes = memory.used;
-  status.peers = static_cast<std::size_t>(
-      std::count_if(connections.begin(), connections.end(),
-                    [](const auto& entry) { return entry.second.peer->is_authentic(); }));
+  status.peers = 0;
+  for (auto& [name, robot] : robots) robot.connected = false;
+  for (auto& [number, connection] : connections) {
+    Peer& peer = *connection.peer;
+    if (!peer.is_authentic()) continue;
+    ++status.peers;
+    Robot& robot = robots[peer.robot()];
+    robot.connected = true;
+    if (auto told = peer.take_sender_report()) robot.report = *told;
+  }
+}
+
+LevelWish Receiver::State::wish_for(const Peer& peer) const {
+  const std::scoped_lock lock(mutex);
+  const auto found = robots.find(peer.robot());
+  return found == robots.end() ? LevelWish{} : found->second.wish;
 }
 
 void Receiver::State::deliver(Peer& peer) {
@@ -286,6 +309,32 @@ ReceiverStatus Receiver::status() const {
   // Whom the callback let in and the handshake did not: the passphrase was wrong.
   status.connections_refused += state_->let_in - std::min(state_->let_in, status.connections);
   return status;
+}
+
+std::vector<RobotStatus> Receiver::robots() const {
+  const std::scoped_lock lock(state_->mutex);
+  std::vector<RobotStatus> all;
+  for (const auto& [name, robot] : state_->robots) {
+    all.push_back({name, robot.connected, robot.report});
+  }
+  return all;
+}
+
+Status Receiver::ask_level(std::string_view robot, std::optional<std::size_t> level) {
+  if (level && *level >= kLevels) {
+    return fail(ErrorCode::invalid_argument, "a level lies between 0 and 5");
+  }
+  const std::scoped_lock lock(state_->mutex);
+  const auto found = state_->robots.find(robot);
+  const bool obeys = found != state_->robots.end() && found->second.connected &&
+                     found->second.report && found->second.report->can_override;
+  if (!obeys) {
+    return fail(ErrorCode::invalid_argument,
+                std::string(robot) +
+                    ": takes no level from here; connect it with its sender's override allowed");
+  }
+  found->second.wish.level = level;
+  return {};
 }
 
 }  // namespace sweepcast

@@ -6,12 +6,12 @@
 #include <optional>
 #include <thread>
 
-#include "codec/frame_edit.hpp"
-#include "core/crc32.hpp"
 #include "link/feedback.hpp"
 #include "link/outbox.hpp"
 #include "link/packet.hpp"
 #include "link/rate_control.hpp"
+#include "link/sender_report.hpp"
+#include "link/sensor_streams.hpp"
 #include "link/srt_socket.hpp"
 #include "sweepcast/link.hpp"
 
@@ -33,14 +33,6 @@ constexpr microseconds kShortestSleep{10'000};  // several packets a wake-up: wa
 constexpr milliseconds kRetry{100};
 constexpr milliseconds kBufferFull{2};
 constexpr milliseconds kExpiryCheck{20};
-
-/// A sensor, and what the receiver knows of it.
-struct Stream {
-  std::string sensor;
-  std::vector<std::byte> model;  ///< of the newest frame that had one
-  std::uint32_t model_id = 0;
-  std::uint32_t confirmed = 0;  ///< model that the receiver holds
-};
 
 /// A connection whose keys are agreed upon.
 struct Session {
@@ -65,12 +57,16 @@ struct Sender::State {
   bool stop = false;
   RateControl control;
   Outbox outbox;
-  std::vector<Stream> streams;
+  SensorStreams streams;
   std::optional<Session> session;
   LinkObserver observer;
   SenderStatus status;
+  std::optional<std::size_t> level;           ///< of the newest sweep
+  std::optional<std::size_t> override_level;  ///< that the receiver asks for, where it may
+  std::uint32_t reports_sent = 0;             ///< of this session
+  Microseconds report_due = 0;
   std::uint64_t retransmitted_before = 0;  ///< by connections that have ended
-  std::vector<std::byte> rewritten, plain;
+  std::vector<std::byte> plain;
 
   std::thread pacer, connector;
 
@@ -81,11 +77,11 @@ struct Sender::State {
                                    std::span<const std::byte> packet,
                                    std::optional<PacketOpener>& opener);
   void take_report(PacketOpener& opener, std::span<const std::byte> packet, Microseconds now);
+  void obey(const Report& report);
+  [[nodiscard]] SenderReport make_report();
+  void send_report(Microseconds now);
   [[nodiscard]] LinkBudget choose(Microseconds now);
   [[nodiscard]] Microseconds send_next(Microseconds now, Microseconds due);
-  [[nodiscard]] Result<std::uint8_t> stream_of(std::string_view sensor);
-  [[nodiscard]] Status prepare_frame(Stream& stream, std::span<const std::byte>& frame,
-                                     std::uint32_t& model);
 };
 
 /// Connects, and connects again, until the end.
@@ -144,6 +140,7 @@ std::string Sender::State::converse(const SrtSocket& socket) {
   }
   const std::scoped_lock lock(mutex);
   session.reset();
+  override_level.reset();
   outbox.clear();
   status.connected = false;
   retransmitted_before = status.packets_retransmitted;
@@ -159,11 +156,13 @@ bool Sender::State::begin_session(SRTSOCKET socket, const Challenge& ours,
     return false;
   }
   const SessionKeys keys = derive_session(options.key, ours, *theirs);
-  opener.emplace(keys.to_sender, PacketType::feedback);
+  opener.emplace(keys.to_sender, std::initializer_list<PacketType>{PacketType::feedback});
   session.emplace(Session{socket, PacketSealer(keys.to_receiver)});
   observer = {};
   control.begin(now_us());
-  for (Stream& stream : streams) stream.confirmed = 0;
+  reports_sent = 0;
+  report_due = 0;
+  streams.begin_connection();
   status.connected = true;
   status.error.clear();
   ++status.connections;
@@ -182,15 +181,44 @@ void Sender::State::take_report(PacketOpener& opener, std::span<const std::byte>
   }
   ++status.reports;
   if (!observer.add(*report, now)) return;
+  obey(*report);
+  if (now >= report_due) send_report(now);
   control.add(observer.take_sample());
-  for (const StreamReport& stream : report->streams) {
-    if (stream.stream < streams.size()) streams[stream.stream].confirmed = stream.model;
-  }
+  streams.confirm(report->streams);
   SRT_TRACEBSTATS stats;
   if (srt_bstats(session->socket, &stats, 0) == 0) {
     status.packets_retransmitted =
         retransmitted_before + static_cast<std::uint64_t>(std::max(0, stats.pktRetransTotal));
   }
+}
+
+void Sender::State::obey(const Report& report) {
+  if (!options.allow_override || !report.wish || report.wish->level == override_level) return;
+  override_level = report.wish->level;
+  report_due = 0;  // whoever asked is to know soon
+}
+
+SenderReport Sender::State::make_report() {
+  SenderReport report;
+  const SendQueue& queue = outbox.queue();
+  report.level = level;
+  report.queued_frames = queue.frames();
+  report.queued_bytes = queue.bytes();
+  report.sweeps = status.sweeps;
+  report.sent = queue.counts().sent;
+  report.cut = queue.counts().cut;
+  report.dropped = queue.counts().dropped;
+  report.qoe = outbox.qoe();
+  report.can_override = options.allow_override;
+  report.override_level = override_level;
+  return report;
+}
+
+/// One that is lost between connections is no loss: the next one tells all.
+void Sender::State::send_report(Microseconds now) {
+  write_sender_report(++reports_sent, make_report(), plain);
+  (void)srt_send_packet(session->socket, session->sealer.seal(PacketType::report, plain));
+  report_due = now + kSenderReportInterval_us;
 }
 
 LinkBudget Sender::State::choose(Microseconds now) {
@@ -203,7 +231,8 @@ LinkBudget Sender::State::choose(Microseconds now) {
     situation.bytes_under_way = packets_under_way(session->socket) * kMostPacketBytes;
   }
   const Choice choice = control.decide(observer.state(now), situation);
-  status.budget = {choice.level, choice.level ? 0 : choice.bytes};
+  const auto level_to_send = override_level ? override_level : choice.level;
+  status.budget = {level_to_send, level_to_send ? 0 : choice.bytes};
   return status.budget;
 }
 
@@ -250,39 +279,6 @@ Microseconds Sender::State::send_next(Microseconds now, Microseconds due) {
   status.bytes += packet.size();
   const double time = static_cast<double>(packet.size() + kWireHead) * 1e6 / control.pace();
   return std::max(due, now - kBurst) + static_cast<Microseconds>(time);
-}
-
-Result<std::uint8_t> Sender::State::stream_of(std::string_view sensor) {
-  const auto found = std::find_if(streams.begin(), streams.end(),
-                                  [&](const Stream& stream) { return stream.sensor == sensor; });
-  if (found != streams.end()) return static_cast<std::uint8_t>(found - streams.begin());
-  if (streams.size() == kMostStreams) {
-    return fail(ErrorCode::limit, "a sender takes at most 16 sensors; start another one");
-  }
-  streams.push_back({std::string(sensor), {}, 0, 0});
-  return static_cast<std::uint8_t>(streams.size() - 1);
-}
-
-/// Puts the sensor's model into the frame where the receiver lacks it, and leaves it out where it
-/// has it. `model`: the one that the frame needs beside itself, 0 for none.
-Status Sender::State::prepare_frame(Stream& stream, std::span<const std::byte>& frame,
-                                    std::uint32_t& model) {
-  FrameHeader header;
-  if (Status parsed = parse_frame_header(frame, header); !parsed) return parsed;
-  const auto own = model_part(frame, header);
-  if (!own) return tl::unexpected(own.error());
-  if (!own->empty()) {
-    stream.model.assign(own->begin(), own->end());
-    stream.model_id = crc32(*own);
-  }
-  model = header.codec == CodecId::beam ? stream.model_id : 0;
-  if (stream.model.empty()) return {};
-  const bool receiver_has_it = stream.confirmed == stream.model_id;
-  if (receiver_has_it == own->empty()) return {};
-  const ModelPart what = receiver_has_it ? ModelPart::drop : ModelPart::put;
-  if (Status done = rewrite_frame(frame, what, stream.model, rewritten); !done) return done;
-  frame = rewritten;
-  return {};
 }
 
 Sender::Sender(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -336,7 +332,7 @@ Status Sender::send(const OutgoingSweep& sweep) {
   }
   State& state = *state_;
   const std::scoped_lock lock(state.mutex);
-  const auto number = state.stream_of(sweep.sensor);
+  const auto number = state.streams.number_of(sweep.sensor);
   if (!number) return tl::unexpected(number.error());
   std::span<const std::byte> frame = sweep.frame;
   SweepLabel label;
@@ -345,7 +341,7 @@ Status Sender::send(const OutgoingSweep& sweep) {
   const auto captured =
       std::chrono::duration_cast<microseconds>(sweep.captured.time_since_epoch()).count();
   label.captured_us = static_cast<std::uint32_t>(captured);
-  if (Status done = state.prepare_frame(state.streams[*number], frame, label.model); !done) {
+  if (Status done = state.streams.prepare_frame(*number, frame, label.model); !done) {
     return done;
   }
   auto layers = cut_layers(frame, label, sweep.most_bytes);
@@ -353,7 +349,8 @@ Status Sender::send(const OutgoingSweep& sweep) {
   ++state.status.sweeps;
   const Microseconds deadline = captured + microseconds(state.options.deadline).count();
   if (sweep.level) state.control.learn(*sweep.level, sweep.frame.size());
-  state.outbox.push(*number, std::move(*layers), deadline, now_us());
+  state.level = sweep.level;
+  state.outbox.push(*number, std::move(*layers), deadline, now_us(), sweep.level);
   state.wake.notify_all();
   return {};
 }
@@ -374,16 +371,23 @@ SenderStatus Sender::status() const {
   if (state_->session) status.link = state_->observer.state(now_us());
   status.link.queued_bytes = queue.bytes();
   status.bytes_per_second = state_->control.pace();
+  status.report = state_->make_report();
   return status;
 }
 
 void Sender::finish() {
   constexpr milliseconds kCheck{5};
   const auto end = steady_clock::now() + state_->options.deadline;
+  bool has_reported = false;
   std::unique_lock lock(state_->mutex);
   while (steady_clock::now() < end) {
+    const bool is_empty = state_->outbox.queue().frames() == 0;
+    if (is_empty && state_->session && !has_reported) {
+      state_->send_report(now_us());
+      has_reported = true;
+    }
     const bool has_arrived = !state_->session || packets_under_way(state_->session->socket) == 0;
-    if (state_->outbox.queue().frames() == 0 && has_arrived) return;
+    if (is_empty && has_arrived) return;
     state_->wake.wait_for(lock, kCheck);
   }
 }

@@ -33,6 +33,7 @@ TEST(Report, ComesBackAndMutationsAreSoundOrNone) {
   write_report(*back, again);
   EXPECT_EQ(again, plain);
   EXPECT_EQ(back->streams[1].sweep, 3U);
+  EXPECT_FALSE(back->wish);
 
   std::mt19937 random(2);
   const std::vector<Bytes> others{plain};
@@ -43,6 +44,26 @@ TEST(Report, ComesBackAndMutationsAreSoundOrNone) {
     if (!report) continue;
     ASSERT_LE(report->streams.size(), kMostStreams);
     for (const StreamReport& stream : report->streams) ASSERT_LT(stream.stream, kMostStreams);
+  }
+}
+
+// Who does not obey, as senders before there were wishes, never gets one: see Peer::report.
+TEST(Report, CarriesAWishWhereThereIsOne) {
+  for (const std::optional<std::size_t> level : {std::optional<std::size_t>(3), {}}) {
+    Report report = made_report();
+    report.wish = LevelWish{level};
+    Bytes plain;
+    write_report(report, plain);
+    ASSERT_EQ(plain.size(), 41U + 2 * 10U + 1U);
+    EXPECT_EQ(std::to_integer<unsigned>(plain.back()), level ? 3U : 255U);
+    const auto back = read_report(plain);
+    ASSERT_TRUE(back && back->wish);
+    EXPECT_EQ(back->wish->level, level);
+    plain.back() = std::byte{6};
+    EXPECT_FALSE(read_report(plain));
+    plain.back() = std::byte{0};
+    plain.push_back(std::byte{0});
+    EXPECT_FALSE(read_report(plain));
   }
 }
 

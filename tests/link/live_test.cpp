@@ -250,6 +250,107 @@ TEST_F(Choices, BudgetStaysSmallOnASlowLink) {
   for (std::size_t i = 20; i < choices.size(); ++i) EXPECT_LE(choices[i], 7'000U) << i;
 }
 
+/// A sender whose strategy is level 1, before a receiver, and what it sends at each level.
+class Overridden : public Live {
+ protected:
+  void begin(bool allow) {
+    server_ = receiver(0, {rover_});
+    SenderOptions options;
+    options.port = server_->port();
+    options.key = rover_;
+    options.deadline = 5000ms;
+    options.strategy = "fixed:1";
+    options.allow_override = allow;
+    auto started = Sender::start(options);
+    ASSERT_TRUE(started) << started.error().message;
+    robot_ = std::move(*started);
+    ASSERT_TRUE(eventually([&] { return report().has_value(); }));
+    const PointCloud cloud = spinning_sweep(16, 360, 7);
+    for (int level = 0; level < 6; ++level) {
+      EncoderOptions how;
+      how.beam.level = level;
+      auto encoder = Encoder::create(how);
+      const auto frame = encoder->encode(cloud, {});
+      frames_.emplace_back(frame->begin(), frame->end());
+    }
+  }
+  /// What the receiver knows of the sender.
+  std::optional<SenderReport> report() {
+    const auto robots = server_->robots();
+    if (robots.empty() || !robots.front().connected) return std::nullopt;
+    EXPECT_EQ(robots.front().robot, "rover");
+    return robots.front().report;
+  }
+  /// Sends one sweep as a sender has to, and gives the frame that arrives.
+  Bytes send_one() {
+    const LinkBudget budget = robot_->choose();
+    EXPECT_TRUE(budget.level);
+    const std::size_t level = budget.level.value_or(0);
+    EXPECT_TRUE(robot_->send({frames_.at(level), "roof", "", steady_clock::now(), 0, level}));
+    const auto letters = mailbox_.wait_for(++sent_);
+    return letters.size() == sent_ ? letters.back().frame : Bytes();
+  }
+
+  std::optional<Receiver> server_;
+  std::optional<Sender> robot_;
+  std::vector<Bytes> frames_;
+  std::size_t sent_ = 0;
+};
+
+TEST_F(Overridden, AnOverrideChangesWhatIsSentUntilItIsTakenBack) {
+  begin(true);
+  EXPECT_TRUE(report()->can_override);
+  EXPECT_EQ(send_one(), frames_[1]);
+  ASSERT_TRUE(server_->ask_level("rover", 4));
+  ASSERT_TRUE(eventually([&] { return report() && report()->override_level == 4U; }));
+  EXPECT_EQ(send_one(), frames_[4]);
+  ASSERT_TRUE(eventually([&] { return report() && report()->level == 4U; }));
+  ASSERT_TRUE(server_->ask_level("rover", std::nullopt));
+  ASSERT_TRUE(eventually([&] { return report() && !report()->override_level; }));
+  EXPECT_EQ(send_one(), frames_[1]);
+  robot_->finish();  // tells the last of it
+  ASSERT_TRUE(eventually([&] { return report() && report()->sent == 3; }));
+  EXPECT_EQ(report()->level, 1U);
+  EXPECT_EQ(report()->sweeps, 3U);
+  EXPECT_EQ(report()->queued_frames, 0U);
+  // Levels 1, 4, 1: 20, 5 after a fall of 15, 20 after a rise of 15.
+  ASSERT_TRUE(report()->qoe);
+  EXPECT_NEAR(*report()->qoe, (20.0 + 5.0 - 15.0 + 20.0 - 15.0) / 3.0, 1e-3);
+}
+
+TEST_F(Overridden, WithoutTheRightNothingIsAskedNorObeyed) {
+  begin(false);
+  EXPECT_FALSE(report()->can_override);
+  const Status refused = server_->ask_level("rover", 4);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("rover"), std::string::npos);
+  EXPECT_FALSE(server_->ask_level("mole", 4));
+  EXPECT_EQ(send_one(), frames_[1]);
+  const std::uint64_t reports = robot_->status().reports;
+  ASSERT_TRUE(eventually([&] { return robot_->status().reports > reports + 2; }));
+  EXPECT_EQ(send_one(), frames_[1]);
+  EXPECT_FALSE(report()->override_level);
+}
+
+TEST_F(Overridden, AWishHoldsAcrossConnectionsAndLevelsAreChecked) {
+  begin(true);
+  EXPECT_FALSE(server_->ask_level("rover", 6));
+  ASSERT_TRUE(server_->ask_level("rover", 5));
+  ASSERT_TRUE(eventually([&] { return report() && report()->override_level == 5U; }));
+  robot_.reset();
+  ASSERT_TRUE(eventually([&] { return !report(); }));
+  EXPECT_FALSE(server_->ask_level("rover", 2));  // it is not there
+  SenderOptions options;
+  options.port = server_->port();
+  options.key = rover_;
+  options.strategy = "fixed:1";
+  options.allow_override = true;
+  auto again = Sender::start(options);
+  ASSERT_TRUE(again);
+  EXPECT_TRUE(eventually([&] { return report() && report()->override_level == 5U; }));
+  EXPECT_EQ(again->choose().level, 5U);
+}
+
 TEST_F(Live, OptionsAreChecked) {
   SenderOptions sender_options;
   EXPECT_FALSE(Sender::start(sender_options));  // no key

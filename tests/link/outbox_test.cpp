@@ -77,6 +77,26 @@ TEST(Outbox, AQueueKeepsAllUntilTheirDeadline) {
   EXPECT_EQ(outbox.queue().counts().sent, 2U);
 }
 
+TEST(Outbox, TheQoeIsOfWhatLeft) {
+  Outbox outbox(SendOrder::oldest_first);
+  EXPECT_FALSE(outbox.qoe());
+  outbox.push(0, layers({1}), 1000, 0, 1);
+  (void)take_all(outbox);  // 20
+  EXPECT_NEAR(*outbox.qoe(), 20.0, 1e-12);
+  outbox.push(0, layers({2}), 1000, 0, 1);  // will not leave
+  outbox.push(1, layers({1}), 9000, 0, 5);  // another sensor's: 0, and no queue before it
+  outbox.push(0, layers({1}), 9000, 0, 2);  // 15, one frame before it
+  ASSERT_TRUE(outbox.peek(0));
+  outbox.pop();
+  (void)take_all(outbox, 1000);
+  EXPECT_EQ(outbox.queue().counts().dropped, 1U);
+  // 20, 0 after a fall of 20, 15 less 0.5 after a rise of 15; the other sensor's 0.
+  EXPECT_NEAR(*outbox.qoe(), ((20.0 - 20.0 - 0.5) / 3.0 + 0.0) / 2.0, 1e-12);
+  outbox.push(0, layers({1}), 9000, 1000);  // of no level
+  (void)take_all(outbox, 1000);
+  EXPECT_NEAR(*outbox.qoe(), 0.0, 1e-12);
+}
+
 TEST(Outbox, ClearDropsAll) {
   Outbox outbox(SendOrder::oldest_first);
   outbox.push(0, layers({2, 1}), 1000, 0);

@@ -36,7 +36,7 @@ class Packets : public ::testing::Test {
 
   LinkSecret key_ = test::counting_key("r").secret;
   PacketSealer sealer_{key_};
-  PacketOpener opener_{key_, PacketType::fragment};
+  PacketOpener opener_{key_, {PacketType::fragment}};
   std::span<const std::byte> plain_;
 };
 
@@ -87,6 +87,21 @@ TEST_F(Packets, OtherKeysAndTypesAreRefused) {
   PacketSealer stranger(other);
   EXPECT_EQ(open(stranger.seal(PacketType::fragment, text("x"))), PacketFault::forged);
   EXPECT_EQ(open(sealer_.seal(PacketType::feedback, text("x"))), PacketFault::malformed);
+  EXPECT_EQ(open(sealer_.seal(PacketType::report, text("x"))), PacketFault::malformed);
+}
+
+TEST_F(Packets, TypesOfOneDirectionShareItsCounterAndCannotBeSwapped) {
+  PacketOpener both(key_, {PacketType::fragment, PacketType::report});
+  const Bytes fragment = sealed("a");
+  const auto report = sealer_.seal(PacketType::report, text("b"));
+  Bytes swapped(report.begin(), report.end());
+  swapped[0] = std::byte{2};
+  EXPECT_EQ(both.open(swapped, plain_), PacketFault::forged);
+  EXPECT_EQ(both.open(report, plain_), PacketFault::none);
+  EXPECT_EQ(both.type(), PacketType::report);
+  EXPECT_EQ(both.open(fragment, plain_), PacketFault::none);
+  EXPECT_EQ(both.type(), PacketType::fragment);
+  EXPECT_EQ(both.open(report, plain_), PacketFault::replayed);
 }
 
 TEST_F(Packets, RandomBytesNeverOpen) {

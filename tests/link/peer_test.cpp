@@ -5,6 +5,7 @@
 #include "codec/frame_edit.hpp"
 #include "core/crc32.hpp"
 #include "link/outbox.hpp"
+#include "link/sender_report.hpp"
 #include "link/support.hpp"
 #include "sweepcast/decoder.hpp"
 
@@ -18,7 +19,21 @@ class PeerTest : public ::testing::Test {
   PeerTest() {
     const Challenge ours = draw_challenge();
     peer_.take(write_hello(ours), 0);
-    sealer_.emplace(derive_session(key_, ours, peer_.challenge()).to_receiver);
+    const SessionKeys keys = derive_session(key_, ours, peer_.challenge());
+    sealer_.emplace(keys.to_receiver);
+    opener_.emplace(keys.to_sender, std::initializer_list<PacketType>{PacketType::feedback});
+  }
+
+  void tell(std::uint32_t number, const SenderReport& report) {
+    Bytes plain;
+    write_sender_report(number, report, plain);
+    peer_.take(sealer_->seal(PacketType::report, plain), 0);
+  }
+  /// The report that the sender is sent at `now`.
+  std::optional<Report> feedback(Microseconds now, LevelWish wish) {
+    std::span<const std::byte> plain;
+    EXPECT_EQ(opener_->open(peer_.report(now, wish), plain), PacketFault::none);
+    return read_report(plain);
   }
 
   /// The packets of a frame as a sender makes them.
@@ -43,6 +58,7 @@ class PeerTest : public ::testing::Test {
   MemoryBudget memory_{std::size_t{1} << 22, 0};
   Peer peer_{key_, std::size_t{1} << 22, memory_, 0};
   std::optional<PacketSealer> sealer_;
+  std::optional<PacketOpener> opener_;
   Outbox outbox_{SendOrder::freshest_first};
 };
 
@@ -105,6 +121,45 @@ TEST_F(PeerTest, ReportsTellWhatArrived) {
   EXPECT_FALSE(peer_.report(60'000).empty());
   EXPECT_TRUE(peer_.report(100'000).empty());
   EXPECT_FALSE(peer_.report(110'000).empty());
+}
+
+TEST_F(PeerTest, SendersTellOfThemselvesTheNewestCounts) {
+  SenderReport report;
+  report.dropped = 4;
+  tell(2, report);
+  EXPECT_TRUE(peer_.is_authentic());
+  report.dropped = 3;
+  tell(1, report);  // was overtaken
+  const auto told = peer_.take_sender_report();
+  ASSERT_TRUE(told);
+  EXPECT_EQ(told->dropped, 4U);
+  EXPECT_FALSE(peer_.take_sender_report());
+  EXPECT_EQ(peer_.take_counts().malformed, 0U);
+  peer_.take(sealer_->seal(PacketType::report, Bytes(50)), 0);
+  EXPECT_EQ(peer_.take_counts().malformed, 1U);
+  EXPECT_FALSE(peer_.take_sender_report());
+}
+
+// A sender of the version before reads no wish and tells nothing of itself: it must get none.
+TEST_F(PeerTest, AWishGoesToThoseAloneWhoSayThatTheyObey) {
+  const LevelWish wish{4};
+  take_all(packets_of(test::small_frames(1).front(), 0, 0), 1000);
+  auto got = feedback(60'000, wish);
+  ASSERT_TRUE(got);
+  EXPECT_FALSE(got->wish);
+  tell(1, {});
+  got = feedback(120'000, wish);
+  ASSERT_TRUE(got);
+  EXPECT_FALSE(got->wish);
+  SenderReport obedient;
+  obedient.can_override = true;
+  tell(2, obedient);
+  got = feedback(180'000, wish);
+  ASSERT_TRUE(got);
+  EXPECT_EQ(got->wish, wish);
+  got = feedback(240'000, {});
+  ASSERT_TRUE(got && got->wish);
+  EXPECT_FALSE(got->wish->level);
 }
 
 // 100,000 packets, random, mutated, forged and replayed: all counted, none delivered.
