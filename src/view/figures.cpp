@@ -31,6 +31,18 @@ void Figures::add(std::string_view robot_name, std::string_view sensor, std::uin
   forget(robot, now);
 }
 
+void Figures::tell(std::span<const RobotStatus> robots) {
+  senders_.clear();
+  for (const RobotStatus& robot : robots) {
+    if (robot.connected && robot.report) senders_.emplace(robot.robot, *robot.report);
+  }
+}
+
+bool Figures::obeys(std::string_view robot) const {
+  const auto found = senders_.find(robot);
+  return found != senders_.end() && found->second.can_override;
+}
+
 std::vector<RobotFigures> Figures::robots(Clock::time_point now) {
   std::vector<RobotFigures> all;
   for (auto& [name, robot] : robots_) {
@@ -41,6 +53,9 @@ std::vector<RobotFigures> Figures::robots(Clock::time_point now) {
     figures.age_ms = robot.age_s * 1e3;
     figures.drops = robot.drops;
     figures.sweeps = robot.sweeps;
+    if (const auto told = senders_.find(name); told != senders_.end()) {
+      figures.sender = told->second;
+    }
     double bytes = 0.0;
     for (const Arrival& arrival : robot.arrivals) bytes += static_cast<double>(arrival.bytes);
     figures.bytes_per_second = bytes / std::chrono::duration<double>(kWindow).count();

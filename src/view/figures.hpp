@@ -5,10 +5,12 @@
 #include <deque>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "sweepcast/link.hpp"
 #include "view/sweep.hpp"
 
 namespace sweepcast::view {
@@ -22,6 +24,7 @@ struct RobotFigures {
   double age_ms = 0.0;                    ///< of the newest sweep, when it came
   std::uint64_t drops = 0;                ///< sequence numbers that never came
   std::uint64_t sweeps = 0;
+  std::optional<SenderReport> sender;  ///< what its sender tells; none where it tells nothing
 };
 
 /// So long after a stream's last sweep it counts as stopped.
@@ -33,6 +36,11 @@ class Figures {
 
   void add(std::string_view robot, std::string_view sensor, std::uint64_t sequence,
            std::size_t bytes, double age_s, Clock::time_point now);
+
+  /// What the senders of all robots tell, in place of what they told before.
+  void tell(std::span<const RobotStatus> robots);
+  /// Whether the robot's sender obeys when it is asked for a level.
+  [[nodiscard]] bool obeys(std::string_view robot) const;
 
   [[nodiscard]] std::vector<RobotFigures> robots(Clock::time_point now);
 
@@ -52,6 +60,7 @@ class Figures {
   static void forget(Robot& robot, Clock::time_point now);
 
   std::map<std::string, Robot, std::less<>> robots_;
+  std::map<std::string, SenderReport, std::less<>> senders_;
 };
 
 }  // namespace sweepcast::view

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "view/page_client.hpp"
-
 namespace sweepcast::view {
 
 Hub::Hub(Show show, std::unique_ptr<Recording> recording, AccessRules rules)
@@ -13,7 +11,9 @@ Hub::Hub(Show show, std::unique_ptr<Recording> recording, AccessRules rules)
       began_(Clock::now()) {}
 
 std::unique_ptr<Client> Hub::make_client(const Upgrade& upgrade, Clock::time_point now) {
-  if (upgrade.is_page) return std::make_unique<PageClient>(show_, recording_.get(), now);
+  if (upgrade.is_page) {
+    return std::make_unique<PageClient>(show_, recording_.get(), now, ask_level_);
+  }
   return std::make_unique<FoxgloveClient>(show_, recording_.get(), clouds_, now);
 }
 

@@ -13,6 +13,7 @@
 #include "view/client.hpp"
 #include "view/figures.hpp"
 #include "view/foxglove_client.hpp"
+#include "view/page_client.hpp"
 #include "view/recording.hpp"
 #include "view/routes.hpp"
 
@@ -44,6 +45,8 @@ class Hub {
   Hub(Show show, std::unique_ptr<Recording> recording, AccessRules rules);
 
   [[nodiscard]] AccessRules& rules() { return rules_; }
+  /// How page clients ask for levels; see `PageClient`.
+  void set_ask_level(PageClient::AskLevel ask_level) { ask_level_ = std::move(ask_level); }
   [[nodiscard]] Recording* recording() { return recording_.get(); }
   [[nodiscard]] const Show& show() const { return show_; }
 
@@ -74,6 +77,7 @@ class Hub {
   Show show_;
   std::unique_ptr<Recording> recording_;
   AccessRules rules_;
+  PageClient::AskLevel ask_level_;
   FoxgloveClouds clouds_;
   std::vector<LiveStream> live_;  ///< as many as the show's streams, where they are live
   std::set<Attendee*> attendees_;

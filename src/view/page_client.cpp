@@ -32,8 +32,12 @@ SharedSweep WaitingSweeps::take() {
   return first;
 }
 
-PageClient::PageClient(const Show& show, Recording* recording, Clock::time_point now)
-    : show_(show), recording_(recording), state_due_(recording != nullptr) {
+PageClient::PageClient(const Show& show, Recording* recording, Clock::time_point now,
+                       AskLevel ask_level)
+    : show_(show),
+      recording_(recording),
+      ask_level_(std::move(ask_level)),
+      state_due_(recording != nullptr) {
   if (recording != nullptr) player_.emplace(recording->size(), show.rate_hz, now);
 }
 
@@ -51,7 +55,7 @@ Status PageClient::take(std::string_view message, bool is_text, Clock::time_poin
 Status PageClient::play(const Command& command, Clock::time_point now) {
   using Kind = Command::Kind;
   if (command.kind == Kind::override_level) {
-    notify(NoticeLevel::warning, "the level is the sender's to choose: the link has no override");
+    ask_level(command);
     return {};
   }
   if (!player_) {
@@ -68,6 +72,15 @@ Status PageClient::play(const Command& command, Clock::time_point now) {
   }
   state_due_ = true;
   return {};
+}
+
+/// What comes of it, the robot's next status tells.
+void PageClient::ask_level(const Command& command) {
+  if (ask_level_ && ask_level_(command.robot, command.level)) return;
+  notify(NoticeLevel::warning,
+         command.robot +
+             ": no level can be asked of it; it has to be connected, and its sender "
+             "started with --allow-override");
 }
 
 void PageClient::notify(NoticeLevel level, const std::string& text) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <deque>
+#include <functional>
+#include <optional>
 #include <string>
 
 #include "view/client.hpp"
@@ -14,8 +16,13 @@ class PageClient : public Client {
  public:
   static constexpr std::uint32_t kMostCredit = 64;  ///< sweeps that may be granted ahead
 
-  /// `show` and `recording` outlive it; `recording` is null where sweeps are live.
-  PageClient(const Show& show, Recording* recording, Clock::time_point now);
+  /// Asks a robot for a level, or for its own choice; false where that robot does not obey.
+  using AskLevel = std::function<bool(const std::string& robot, std::optional<std::size_t> level)>;
+
+  /// `show` and `recording` outlive it; `recording` is null where sweeps are live. Without
+  /// `ask_level` no robot obeys.
+  PageClient(const Show& show, Recording* recording, Clock::time_point now,
+             AskLevel ask_level = {});
 
   [[nodiscard]] Status take(std::string_view message, bool is_text, Clock::time_point now) override;
   [[nodiscard]] std::optional<Message> next(Clock::time_point now) override;
@@ -26,6 +33,7 @@ class PageClient : public Client {
   void notify(NoticeLevel level, const std::string& text) override;
 
  private:
+  void ask_level(const Command& command);
   [[nodiscard]] Status play(const Command& command, Clock::time_point now);
   [[nodiscard]] std::optional<Message> next_text(Clock::time_point now);
   [[nodiscard]] SharedSweep next_sweep(Clock::time_point now);
@@ -33,6 +41,7 @@ class PageClient : public Client {
 
   const Show& show_;
   Recording* recording_;
+  AskLevel ask_level_;
   std::optional<Player> player_;
   std::optional<std::uint32_t> shown_;  ///< the frame that was sent last
   std::uint32_t credit_ = 0;

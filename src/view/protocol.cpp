@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/bytes.hpp"
+#include "rate/qoe.hpp"
 
 namespace sweepcast::view {
 namespace {
@@ -42,6 +43,21 @@ Result<std::uint32_t> number_of(const Json& message, const char* key) {
   return refuse("a message's \"" + std::string(key) + "\" is no whole number of 32 bits");
 }
 
+Result<Command> read_override(const Json& message) {
+  const auto robot = message.find("robot");
+  if (robot == message.end() || !robot->is_string()) return refuse("\"override\" has no robot");
+  Command command{Command::Kind::override_level};
+  command.robot = robot->get<std::string>();
+  const auto level = message.find("level");
+  if (level == message.end()) return refuse("\"override\" has no level");
+  if (level->is_null()) return command;
+  const auto number = number_of(message, "level");
+  if (!number) return tl::unexpected(number.error());
+  if (*number >= kLevels) return refuse("\"override\" has a level beyond 5");
+  command.level = *number;
+  return command;
+}
+
 }  // namespace
 
 std::string write_hello(const Show& show) {
@@ -56,23 +72,31 @@ std::string write_hello(const Show& show) {
                   {"rate_hz", show.rate_hz},
                   {"frames", or_null(show.frames)},
                   {"has_original", show.has_original},
-                  {"can_override", false},  // the link's reports have no room for it
                   {"streams", std::move(streams)}});
 }
 
 std::string write_status(double time_s, std::span<const RobotFigures> robots) {
   Json list = Json::array();
   for (const RobotFigures& robot : robots) {
+    // What nobody tells stays null.
+    const auto told = [&](auto SenderReport::*figure) {
+      return robot.sender ? Json((*robot.sender).*figure) : Json(nullptr);
+    };
+    const SenderReport sender = robot.sender.value_or(SenderReport{});
     list.push_back({{"name", robot.name},
                     {"connected", robot.connected},
                     {"bytes_per_second", robot.bytes_per_second},
                     {"bytes_per_sweep", or_null(robot.bytes_per_sweep)},
-                    {"level", nullptr},
-                    {"queue_frames", nullptr},
+                    {"level", or_null(sender.level)},
+                    {"queue_frames", told(&SenderReport::queued_frames)},
+                    {"queue_bytes", told(&SenderReport::queued_bytes)},
                     {"age_ms", robot.age_ms},
                     {"drops", robot.drops},
-                    {"qoe", nullptr},
-                    {"sweeps", robot.sweeps}});
+                    {"sender_drops", told(&SenderReport::dropped)},
+                    {"qoe", or_null(sender.qoe)},
+                    {"sweeps", robot.sweeps},
+                    {"can_override", sender.can_override},
+                    {"override", or_null(sender.override_level)}});
   }
   return text_of({{"kind", "status"}, {"time_s", time_s}, {"robots", std::move(list)}});
 }
@@ -123,7 +147,7 @@ Result<Command> read_command(std::string_view text) {
   using Kind = Command::Kind;
   if (kind == "play") return Command{Kind::play};
   if (kind == "pause") return Command{Kind::pause};
-  if (kind == "override") return Command{Kind::override_level};
+  if (kind == "override") return read_override(message);
   if (kind == "more" || kind == "seek") {
     const bool is_more = kind == "more";
     const auto number = number_of(message, is_more ? "count" : "index");

@@ -35,6 +35,8 @@ struct Command {
   std::uint32_t number = 0;  ///< of `more` and `seek`
   double speed = 1.0;        ///< finite
   bool loop = false;
+  std::string robot{};                 ///< of `override_level`
+  std::optional<std::size_t> level{};  ///< of `override_level`; none: the sender's own choice
 };
 
 /// Reads a client's message. Error invalid_argument, with what is wrong with it.

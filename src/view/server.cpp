@@ -44,6 +44,7 @@ struct Server::State {
   std::mutex mutex;  // guards what follows
   Figures figures;
   std::map<std::pair<std::string, std::string>, Arrival> arrivals;  ///< by robot and sensor
+  std::map<std::string, std::optional<std::size_t>> wishes;         ///< levels, by robot
   bool is_told = false;  ///< the thread knows that there are some
 
   std::thread thread;
@@ -54,6 +55,7 @@ struct Server::State {
   void accept();
   void tick();
   void take_arrivals();
+  [[nodiscard]] bool ask_level(const std::string& robot, std::optional<std::size_t> level);
 };
 
 Status Server::State::listen(const asio::ip::address& address, std::uint16_t port) {
@@ -119,6 +121,13 @@ void Server::State::take_arrivals() {
   for (auto& [key, arrival] : newest) hub.take(std::move(arrival), Clock::now());
 }
 
+bool Server::State::ask_level(const std::string& robot, std::optional<std::size_t> level) {
+  const std::scoped_lock lock(mutex);
+  if (!figures.obeys(robot)) return false;
+  wishes[robot] = level;
+  return true;
+}
+
 Server::State::~State() {
   context.stop();
   if (thread.joinable()) thread.join();
@@ -164,6 +173,9 @@ Result<Server> Server::start(ServerOptions options, std::unique_ptr<Recording> r
     return tl::unexpected(listening.error());
   }
   state->hub.rules().port = state->endpoint.port();
+  state->hub.set_ask_level([s = state.get()](const std::string& robot, auto level) {
+    return s->ask_level(robot, level);
+  });
   state->accept();
   state->tick();
   state->thread = std::thread([s = state.get()] { s->run(); });
@@ -199,6 +211,20 @@ void Server::publish(const LiveSweep& sweep) {
   arrivals.insert_or_assign(std::move(key), std::move(arrival));
   if (std::exchange(state_->is_told, true)) return;
   asio::post(state_->context, [state = state_.get()] { state->take_arrivals(); });
+}
+
+void Server::tell(std::span<const RobotStatus> robots) {
+  const std::scoped_lock lock(state_->mutex);
+  state_->figures.tell(robots);
+}
+
+std::vector<LevelWish> Server::take_wishes() {
+  const std::scoped_lock lock(state_->mutex);
+  std::vector<LevelWish> wishes;
+  for (const auto& [robot, level] : std::exchange(state_->wishes, {})) {
+    wishes.push_back({robot, level});
+  }
+  return wishes;
 }
 
 }  // namespace sweepcast::view

@@ -4,11 +4,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "sweepcast/link.hpp"
 #include "sweepcast/status.hpp"
 #include "view/recording.hpp"
 #include "view/sweep.hpp"
@@ -29,6 +31,12 @@ struct LiveSweep {
   std::string_view robot, sensor, name;
   std::span<const std::byte> frame;
   double age_s = 0;
+};
+
+/// What somebody who views asks of a robot: a level, or, with none, its sender's own choice.
+struct LevelWish {
+  std::string robot;
+  std::optional<std::size_t> level;
 };
 
 class Server {
@@ -52,6 +60,12 @@ class Server {
   /// Shows a live sweep. Copies the frame and returns at once, from any thread; of sweeps of a
   /// stream that come faster than the server's thread takes them, only the newest stays.
   void publish(const LiveSweep& sweep);
+
+  /// What the senders of all robots tell of themselves; from any thread.
+  void tell(std::span<const RobotStatus> robots);
+  /// What was asked since the last call, the last wish of each robot, and of no other robots than
+  /// those whose senders told that they obey; from any thread.
+  [[nodiscard]] std::vector<LevelWish> take_wishes();
 
  private:
   struct State;

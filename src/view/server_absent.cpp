@@ -25,4 +25,10 @@ std::uint16_t Server::port() const noexcept {
 
 void Server::publish(const LiveSweep& /*sweep*/) {}
 
+void Server::tell(std::span<const RobotStatus> /*robots*/) {}
+
+std::vector<LevelWish> Server::take_wishes() {
+  return {};
+}
+
 }  // namespace sweepcast::view

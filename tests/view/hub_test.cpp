@@ -104,6 +104,44 @@ TEST_F(LiveHub, TakesNoMoreStreamsThanHaveAnIdAndNoFrameThatIsNone) {
   EXPECT_EQ(hub_.show().streams.size(), kMostStreams);
 }
 
+TEST(Figures, HaveWhatSendersTellWhileTheyAreConnected) {
+  const Clock::time_point start{1000s};
+  Figures figures;
+  figures.add("rover", "roof", 0, 1000, 0.05, start);
+  figures.add("mole", "roof", 0, 1000, 0.05, start);
+  SenderReport report;
+  report.level = 2;
+  report.queued_frames = 3;
+  report.queued_bytes = 40'000;
+  report.dropped = 5;
+  report.can_override = true;
+  RobotStatus rover{"rover", true, report};
+  figures.tell({{rover, {"mole", true, std::nullopt}, {"ghost", true, report}}});
+  auto robots = figures.robots(start);
+  ASSERT_EQ(robots.size(), 2U);
+  const json status = json::parse(write_status(1.0, robots))["robots"];
+  EXPECT_EQ(status[0]["name"], "mole");
+  for (const char* key :
+       {"level", "queue_frames", "queue_bytes", "sender_drops", "qoe", "override"}) {
+    EXPECT_TRUE(status[0].at(key).is_null()) << key;
+  }
+  EXPECT_EQ(status[0]["can_override"], false);
+  EXPECT_EQ(status[1]["level"], 2);
+  EXPECT_EQ(status[1]["queue_frames"], 3);
+  EXPECT_EQ(status[1]["queue_bytes"], 40'000);
+  EXPECT_EQ(status[1]["sender_drops"], 5);
+  EXPECT_TRUE(status[1]["qoe"].is_null());
+  EXPECT_TRUE(status[1]["override"].is_null());
+  EXPECT_EQ(status[1]["can_override"], true);
+  EXPECT_TRUE(figures.obeys("rover"));
+  EXPECT_FALSE(figures.obeys("mole"));
+  EXPECT_FALSE(figures.obeys("nobody"));
+  rover.connected = false;
+  figures.tell({{rover}});
+  EXPECT_FALSE(figures.obeys("rover"));
+  EXPECT_FALSE(figures.robots(start)[1].sender);
+}
+
 TEST(Figures, AreOfTheLastTwoSeconds) {
   const Clock::time_point start{1000s};
   Figures figures;

@@ -57,7 +57,6 @@ TEST_F(LivePage, BeginsWithAHello) {
   EXPECT_EQ(hello["version"], 1);
   EXPECT_EQ(hello["source"], "live");
   EXPECT_TRUE(hello["frames"].is_null());
-  EXPECT_EQ(hello["can_override"], false);
   EXPECT_EQ(hello["streams"], json::parse(R"([{"id":0,"robot":"rover","sensor":"roof"}])"));
   EXPECT_FALSE(client_.next(kStart));
   client_.streams_changed();
@@ -118,6 +117,34 @@ TEST_F(LivePage, SaysWhatCannotBe) {
   EXPECT_EQ(next_json(client_)["level"], "warning");
   EXPECT_EQ(next_json(client_)["kind"], "notice");
   EXPECT_FALSE(client_.next(kStart));
+}
+
+TEST_F(LivePage, AsksForLevelsWhereTheRobotObeys) {
+  std::vector<std::pair<std::string, std::optional<std::size_t>>> asked;
+  PageClient client(show_, nullptr, kStart, [&](const std::string& robot, auto level) {
+    asked.emplace_back(robot, level);
+    return robot == "rover";
+  });
+  (void)client.next(kStart);
+  send(client, R"({"kind":"override","robot":"rover","level":5})");
+  send(client, R"({"kind":"override","robot":"rover","level":null})");
+  EXPECT_FALSE(client.next(kStart));  // the next status tells what came of it
+  send(client, R"({"kind":"override","robot":"mole","level":0})");
+  const json notice = next_json(client);
+  EXPECT_EQ(notice["level"], "warning");
+  EXPECT_NE(notice["text"].get<std::string>().find("mole"), std::string::npos);
+  ASSERT_EQ(asked.size(), 3U);
+  EXPECT_EQ(asked[0].second, 5U);
+  EXPECT_FALSE(asked[1].second);
+  for (const char* text : {R"({"kind":"override"})", R"({"kind":"override","robot":"rover"})",
+                           R"({"kind":"override","robot":7,"level":1})",
+                           R"({"kind":"override","robot":"rover","level":6})",
+                           R"({"kind":"override","robot":"rover","level":-1})",
+                           R"({"kind":"override","robot":"rover","level":"1"})",
+                           R"({"kind":"override","robot":"rover","level":1.5})"}) {
+    EXPECT_FALSE(client.take(text, true, kStart)) << text;
+  }
+  EXPECT_EQ(asked.size(), 3U);
 }
 
 TEST_F(LivePage, RefusesWhatIsNoMessage) {

@@ -266,5 +266,33 @@ TEST(ViewServerLive, TellsOfStreamsAndFigures) {
   EXPECT_TRUE(next_sweep(client));
 }
 
+TEST(ViewServerLive, PassesWishesOnFromWhoMayViewForRobotsThatObey) {
+  Server server = start({"127.0.0.1", 0, "s3cret", {}, {}, 10.0}, nullptr);
+  auto encoder = Encoder::create(beam_options(0.05));
+  server.publish({"rover", "roof", "a", *encoder->encode(spinning_sweep(16, 360, 1), {}), 0.05});
+  EXPECT_EQ(WebClient().connect(server.port(), "/live", kPage), 401);
+  WebClient client;
+  ASSERT_EQ(client.connect(server.port(), "/live?token=s3cret", kPage), 101);
+  client.send(R"({"kind":"override","robot":"rover","level":3})");
+  EXPECT_EQ(next_of_kind(client, "notice")["level"], "warning");  // nobody said that it obeys
+  EXPECT_TRUE(server.take_wishes().empty());
+  SenderReport report;
+  report.can_override = true;
+  server.tell({{RobotStatus{"rover", true, report}}});
+  json robot;
+  while (robot.is_null() || !robot["can_override"].get<bool>()) {
+    robot = next_of_kind(client, "status")["robots"].at(0);
+  }
+  client.send(R"({"kind":"override","robot":"rover","level":3})");
+  client.send(R"({"kind":"override","robot":"rover","level":4})");
+  client.send(R"({"kind":"override","robot":"mole","level":1})");
+  EXPECT_EQ(next_of_kind(client, "notice")["level"], "warning");  // the mole's; all are taken
+  const auto wishes = server.take_wishes();
+  ASSERT_EQ(wishes.size(), 1U);
+  EXPECT_EQ(wishes[0].robot, "rover");
+  EXPECT_EQ(wishes[0].level, 4U);
+  EXPECT_TRUE(server.take_wishes().empty());
+}
+
 }  // namespace
 }  // namespace sweepcast::test
