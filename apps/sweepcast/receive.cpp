@@ -53,13 +53,65 @@ std::vector<Metric> metrics_of(const ReceiverStatus& s, const Arrivals::Figures&
   };
 }
 
-void report(const ReceiverStatus& s, const Arrivals::Figures& f, bool json) {
+/// What the senders of robots that are connected tell.
+std::vector<Metric> metrics_of(const std::vector<RobotStatus>& robots) {
+  const auto number = [](auto value) { return static_cast<double>(value); };
+  std::vector<Metric> metrics;
+  const auto add = [&](const char* name, const char* help, auto figure) {
+    for (const RobotStatus& robot : robots) {
+      if (!robot.connected || !robot.report) continue;
+      const auto value = figure(*robot.report);
+      if (value) metrics.push_back({name, help, number(*value), robot.robot});
+    }
+  };
+  using R = SenderReport;
+  add("sweepcast_robot_level", "Level of its newest sweep", [](const R& r) { return r.level; });
+  add("sweepcast_robot_override_level", "Level that it was asked for and sends",
+      [](const R& r) { return r.override_level; });
+  add("sweepcast_robot_queue_frames", "Its sweeps that are not fully sent",
+      [](const R& r) { return std::optional(r.queued_frames); });
+  add("sweepcast_robot_queue_bytes", "Bytes of them",
+      [](const R& r) { return std::optional(r.queued_bytes); });
+  add("sweepcast_robot_sweeps_total", "Sweeps that it had to send",
+      [](const R& r) { return std::optional(r.sweeps); });
+  add("sweepcast_robot_sweeps_dropped_total", "Sweeps that it dropped",
+      [](const R& r) { return std::optional(r.dropped); });
+  add("sweepcast_robot_qoe", "Mean QoE of its last sweeps", [](const R& r) { return r.qoe; });
+  return metrics;
+}
+
+/// What the senders of all robots told last.
+nlohmann::ordered_json json_of(const std::vector<RobotStatus>& robots) {
+  const auto or_null = [](const auto& value) {
+    return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+  };
+  auto out = nlohmann::ordered_json::object();
+  for (const RobotStatus& robot : robots) {
+    out[robot.robot] = nullptr;
+    if (!robot.report) continue;
+    const SenderReport& r = *robot.report;
+    out[robot.robot] = {{"level", or_null(r.level)},
+                        {"override", or_null(r.override_level)},
+                        {"queue_frames", r.queued_frames},
+                        {"queue_bytes", r.queued_bytes},
+                        {"sweeps", r.sweeps},
+                        {"sent", r.sent},
+                        {"cut", r.cut},
+                        {"dropped", r.dropped},
+                        {"qoe", or_null(r.qoe)}};
+  }
+  return out;
+}
+
+void report(const ReceiverStatus& s, const Arrivals::Figures& f,
+            const std::vector<RobotStatus>& robots, bool json) {
   if (json) {
     nlohmann::ordered_json out;
     for (const Metric& metric : metrics_of(s, f)) {
       constexpr std::size_t kPrefix = sizeof("sweepcast_") - 1;
       out[metric.name.substr(kPrefix)] = metric.value;
     }
+    out["robots"] = json_of(robots);
     print_json(out);
     return;
   }
@@ -94,6 +146,15 @@ void show(view::Server& server, const ReceivedSweep& sweep) {
   server.publish({sweep.robot, sweep.sensor, sweep.name, sweep.frame, sweep.age_s});
 }
 
+/// Tells who views what the senders tell, and the senders what those who view ask for.
+void mediate(view::Server& server, Receiver& receiver) {
+  server.tell(receiver.robots());
+  for (const view::LevelWish& wish : server.take_wishes()) {
+    // Refused where the robot has just gone; the page sees that it does not obey.
+    (void)receiver.ask_level(wish.robot, wish.level);
+  }
+}
+
 Status receive(ReceiveOptions& options) {
   stop_on_signals();  // before anything is written
   auto keys = read_link_keys(options.keys_file);
@@ -114,16 +175,19 @@ Status receive(ReceiveOptions& options) {
   std::optional<MetricsServer> server;
   if (!options.metrics.empty()) {
     auto serving = MetricsServer::start(metrics_address(options.metrics), [&] {
-      return metrics_of(receiver->status(), arrivals.figures());
+      auto metrics = metrics_of(receiver->status(), arrivals.figures());
+      for (Metric& metric : metrics_of(receiver->robots())) metrics.push_back(std::move(metric));
+      return metrics;
     });
     if (!serving) return tl::unexpected(serving.error());
     server = std::move(*serving);
   }
   print_note(fmt::format("listening at {}:{}", options.receiver.address, receiver->port()));
-  constexpr std::chrono::milliseconds kInterval{500};
+  constexpr std::chrono::milliseconds kInterval{200};
   {
     StatusLine line;
     while (!wait_for_stop(std::chrono::steady_clock::now() + kInterval)) {
+      if (*viewer) mediate(**viewer, *receiver);
       line.update([&] {
         const ReceiverStatus s = receiver->status();
         return fmt::format("{} robots, {} sweeps whole, {} cut, {} missed, age {:.0f} ms  {}",
@@ -134,8 +198,9 @@ Status receive(ReceiveOptions& options) {
   }
   server.reset();
   const ReceiverStatus last = receiver->status();
+  const std::vector<RobotStatus> robots = receiver->robots();
   receiver.reset();
-  report(last, arrivals.figures(), options.json && options.output != "-");
+  report(last, arrivals.figures(), robots, options.json && options.output != "-");
   return arrivals.close();
 }
 

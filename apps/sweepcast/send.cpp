@@ -35,6 +35,7 @@ struct SendOptions {
   int deadline_ms = 250;
   std::optional<int> wait_s;  ///< none: 10, but not where it loops
   bool loop = false;
+  bool allow_override = false;
   bool json = false;
 };
 
@@ -60,7 +61,7 @@ Result<std::vector<Feed>> open_feeds(const SendOptions& options) {
   for (std::size_t i = 0; i < options.inputs.size(); ++i) {
     const std::string sensor = i < options.sensors.size() ? options.sensors[i] : "lidar";
     auto feed = Feed::open({options.inputs[i], sensor, options.encoder, options.strategy,
-                            options.rate_hz, options.loop});
+                            options.rate_hz, options.loop, options.allow_override});
     if (!feed) return tl::unexpected(feed.error());
     feeds.push_back(std::move(*feed));
   }
@@ -181,7 +182,7 @@ Status Sending::run() {
 std::vector<Metric> Sending::metrics() const {
   const SenderStatus s = sender_.status();
   const auto number = [](auto value) { return static_cast<double>(value); };
-  return {
+  std::vector<Metric> metrics{
       {"sweepcast_connected", "1 while there is a receiver", s.connected ? 1.0 : 0.0},
       {"sweepcast_connections_total", "Connections made", number(s.connections)},
       {"sweepcast_sweeps_total", "Sweeps to send", number(s.sweeps)},
@@ -194,22 +195,32 @@ std::vector<Metric> Sending::metrics() const {
       {"sweepcast_packets_refused_total", "Packets that were not the receiver's",
        number(s.packets_refused)},
       {"sweepcast_bytes_total", "Bytes of packets sent", number(s.bytes)},
+      {"sweepcast_queue_frames", "Sweeps that are not fully sent", number(s.report.queued_frames)},
       {"sweepcast_queue_bytes", "Bytes that wait", number(s.link.queued_bytes)},
       {"sweepcast_queue_delay_seconds", "One-way delay above its least", s.link.queue_delay_s},
       {"sweepcast_round_trip_seconds", "Round trip", s.link.round_trip_s},
       {"sweepcast_receive_rate_bytes", "Bytes a second that arrive", s.link.receive_rate},
       {"sweepcast_budget_sweep_bytes", "Bytes for the next sweeps", number(s.budget.sweep_bytes)},
   };
+  if (s.report.level) {
+    metrics.push_back({"sweepcast_level", "Level of the newest sweep", number(*s.report.level)});
+  }
+  if (s.report.qoe) {
+    metrics.push_back({"sweepcast_qoe", "Mean QoE of the last sweeps", *s.report.qoe});
+  }
+  return metrics;
 }
 
 std::string Sending::line() const {
   const SenderStatus s = sender_.status();
   if (!s.connected) return options_.to + ": not connected: " + s.error;
-  return fmt::format(
-      "{} sweeps, {} dropped, {:.1f} KB a sweep, {:.0f} KB/s arrive, queue {:.1f} KB and {:.0f} ms",
-      s.sweeps, s.sweeps_dropped, static_cast<double>(s.budget.sweep_bytes) / 1e3,
-      s.link.receive_rate / 1e3, static_cast<double>(s.link.queued_bytes) / 1e3,
-      s.link.queue_delay_s * 1e3);
+  std::string sweep =
+      fmt::format("{:.1f} KB a sweep", static_cast<double>(s.budget.sweep_bytes) / 1e3);
+  if (s.budget.level) sweep = fmt::format("level {}", *s.budget.level);
+  if (s.report.override_level) sweep += ", as the receiver asks";
+  return fmt::format("{} sweeps, {} dropped, {}, {:.0f} KB/s arrive, queue {:.1f} KB and {:.0f} ms",
+                     s.sweeps, s.sweeps_dropped, sweep, s.link.receive_rate / 1e3,
+                     static_cast<double>(s.link.queued_bytes) / 1e3, s.link.queue_delay_s * 1e3);
 }
 
 void Sending::report() const {
@@ -249,6 +260,7 @@ Status send(const SendOptions& options) {
   sender_options.strategy = options.strategy;
   sender_options.codec = options.encoder.codec;
   sender_options.rate_hz = options.rate_hz;
+  sender_options.allow_override = options.allow_override;
   auto sender = Sender::start(std::move(sender_options));
   if (!sender) return tl::unexpected(sender.error());
   return Sending(options, std::move(*feeds), std::move(*sender)).run();
@@ -283,6 +295,9 @@ void add_send(CLI::App& app, Command& command) {
                   "sweep; fixed:L: one for all [budget]")
       ->check(CLI::Validator(check_strategy, ""))
       ->type_name("NAME");
+  sub->add_flag("--allow-override", options->allow_override,
+                "Whoever watches at the receiver may ask for a level of clouds, in the strategy's "
+                "place");
   sub->add_option("--deadline", options->deadline_ms, "What is older is dropped, ms [250]")
       ->check(CLI::Range(10, 10'000).description(""))
       ->type_name("MS");

@@ -29,6 +29,11 @@ TEST_F(LiveTool, ARecordingArrivesWhole) {
             "wait $R; echo $?");
   EXPECT_NE(outcome.out.find("\"sent\": 3"), std::string::npos) << outcome.out << outcome.err;
   EXPECT_NE(outcome.out.find("}\n0\n0\n"), std::string::npos) << outcome.out << read("note");
+  const auto told = nlohmann::json::parse(read("report"), nullptr, false)["robots"]["rover"];
+  EXPECT_EQ(told["sent"], 3) << read("report");
+  EXPECT_EQ(told["queue_frames"], 0);
+  EXPECT_TRUE(told["level"].is_null());  // its frames are made already, at whatever level
+  EXPECT_TRUE(told["qoe"].is_null());
   EXPECT_EQ(list("got/rover"), (std::vector<std::string>{"roof.sweep"}));
   const auto info = run("info got/rover/roof.sweep --json").json();
   ASSERT_EQ(info["frames"].size(), 3U);
@@ -161,6 +166,8 @@ TEST_F(LiveTool, MistakesAreNamed) {
   expect_failure(run("send sweeps --to 127.0.0.1 --key k"), 1, {"HOST:PORT"});
   expect_failure(run("send sweeps --to 127.0.0.1:9 --key none"), 1, {"none: no such key"});
   expect_failure(run("send sweeps --to 127.0.0.1:9 --key k --strategy best"), 2, {"--strategy"});
+  expect_failure(run("send room.sweep --to 127.0.0.1:9 --key k --allow-override"), 1,
+                 {"room.sweep", "--allow-override"});
   expect_failure(run("send sweeps sweeps --to 127.0.0.1:9 --key k"), 2, {"--sensor"});
   expect_failure(run("receive --listen 70000 --keys k -o x"), 2, {"--listen"});
   expect_failure(shell("chmod 644 k; \"$SWEEPCAST\" receive --listen 0 --keys k -o x"), 1,

@@ -1,9 +1,14 @@
 // view, and receive --view, run as a user runs them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <functional>
+#include <future>
+#include <optional>
 
 #include "apps/tool_fixture.hpp"
+#include "view/web_client.hpp"
 
 namespace sweepcast::test {
 namespace {
@@ -77,6 +82,73 @@ TEST_F(ViewTool, ReceivingIsShown) {
   expect_failure(run("receive --listen 0 --keys k -o got --view 0.0.0.0:0"), 1,
                  {"0.0.0.0", "token"});
   expect_failure(run("receive --listen 0 --keys k -o got --view x"), 2, {"--view"});
+}
+
+/// The next status whose robot is as `wanted` says; null where the connection ends.
+nlohmann::json next_robot(WebClient& client,
+                          const std::function<bool(const nlohmann::json&)>& wanted) {
+  for (;;) {
+    const Received got = client.read();
+    if (!got.is_open) return nullptr;
+    if (!got.is_text) continue;
+    const auto message = nlohmann::json::parse(got.bytes, nullptr, false);
+    if (message["kind"] != "status" || message["robots"].empty()) continue;
+    if (wanted(message["robots"][0])) return message["robots"][0];
+  }
+}
+
+TEST_F(ViewTool, AnOperatorsLevelIsSentUntilItIsTakenBack) {
+  if (run("receive --help").err.find("not in this build") != std::string::npos) {
+    GTEST_SKIP() << "this build has no live link";
+  }
+  make_recording(3);
+  ASSERT_EQ(run("keygen k --robot rover").exit_status, 0);
+  ASSERT_EQ(run("encode sweeps -o finer.sweep --level 1 --fields xyz").exit_status, 0);
+  ASSERT_EQ(shell("mkfifo viewing gate").exit_status, 0);
+  auto outcome = std::async(std::launch::async, [this] {
+    return shell(
+        "\"$SWEEPCAST\" receive --listen 0 --keys k -o got --view 0 --json >report 2>note & R=$!; "
+        "until grep -q listening note; do kill -0 $R || exit 9; done; "
+        "PORT=$(sed -n 's/.*listening at .*:\\([0-9]*\\)$/\\1/p' note); "
+        "\"$SWEEPCAST\" send sweeps --to 127.0.0.1:$PORT --key k --loop --strategy fixed:1 "
+        "--allow-override >/dev/null & S=$!; "
+        "sed -n 's/.*viewing at .*:\\([0-9]*\\)$/\\1/p' note >viewing; cat gate; "
+        "kill -TERM $S; wait $S; echo $?; kill -TERM $R; wait $R; echo $?");
+  });
+  WebClient client;
+  const int port = std::stoi(read("viewing"));
+  EXPECT_EQ(client.connect(static_cast<std::uint16_t>(port), "/live", "sweepcast.view.v1"), 101);
+  const auto level_is = [&](std::optional<int> override_level, int level) {
+    return !next_robot(client, [&](const auto& robot) {
+              return robot["can_override"] == true && robot["level"] == level &&
+                     robot["override"].is_number() == override_level.has_value();
+            }).is_null();
+  };
+  EXPECT_TRUE(level_is({}, 1));
+  client.send(R"({"kind":"override","robot":"rover","level":5})");
+  EXPECT_TRUE(level_is(5, 5));
+  client.send(R"({"kind":"override","robot":"rover","level":null})");
+  EXPECT_TRUE(level_is({}, 1));
+  write("gate", "");
+  EXPECT_EQ(outcome.get().out, "0\n0\n") << read("note");
+
+  const auto told = nlohmann::json::parse(read("report"), nullptr, false)["robots"]["rover"];
+  EXPECT_EQ(told["level"], 1);
+  EXPECT_TRUE(told["qoe"].is_number());
+  const auto sizes = [&](const std::string& file) {
+    std::vector<int> all;
+    for (const auto& frame : run("info " + file + " --json").json()["frames"]) {
+      all.push_back(frame["bytes"].get<int>());
+    }
+    return all;
+  };
+  const auto finer = sizes("finer.sweep");
+  const int least = *std::min_element(finer.begin(), finer.end());
+  const auto got = sizes("got/rover/lidar.sweep");
+  ASSERT_FALSE(got.empty());
+  EXPECT_GE(got.front(), least);
+  EXPECT_LT(*std::min_element(got.begin(), got.end()), least);
+  EXPECT_GE(got.back(), least);
 }
 
 TEST_F(ViewTool, FoxglovesOwnClientUnderstandsIt) {

@@ -18,6 +18,12 @@ Result<Feed> Feed::open(FeedOptions options) {
   auto source = open_source(feed.options_.input);
   if (!source) return tl::unexpected(source.error());
   feed.source_ = std::move(*source);
+  if (!feed.source_->gives_clouds() && feed.options_.allow_override) {
+    return fail(ErrorCode::invalid_argument,
+                feed.options_.input +
+                    ": its frames are made already, at whatever level, so nobody can ask for "
+                    "another; give a folder of clouds, or leave out --allow-override");
+  }
   const std::string& strategy = feed.options_.strategy;
   if (!feed.source_->gives_clouds() && strategy != "budget" && !strategy.starts_with("fixed")) {
     return fail(ErrorCode::invalid_argument,
@@ -42,8 +48,8 @@ Result<OutgoingSweep> Feed::make(const LinkBudget& budget) {
   out.name = std::string_view(sweep_.name).substr(0, kMostName);
   out.frame = sweep_.frame;
   out.most_bytes = budget.sweep_bytes;
-  out.level = budget.level;
   if (!source_->gives_clouds()) return out;
+  out.level = budget.level;
   const auto frame = budget.level ? at_level(*budget.level) : fit(budget.sweep_bytes);
   if (!frame) return tl::unexpected(frame.error());
   out.frame = *frame;

@@ -22,12 +22,13 @@ struct FeedOptions {
   std::string strategy;
   double rate_hz = 10.0;
   bool loop = false;
+  bool allow_override = false;  ///< levels may be asked for
 };
 
 class Feed {
  public:
-  /// Errors: those of `open_source`; invalid_argument (a strategy that chooses levels, where frames
-  /// are made already).
+  /// Errors: those of `open_source`; invalid_argument (levels are to be chosen or asked for, where
+  /// frames are made already).
   [[nodiscard]] static Result<Feed> open(FeedOptions options);
 
   /// Goes to the next sweep. False where there is none. Errors: those of `SweepSource::next`.

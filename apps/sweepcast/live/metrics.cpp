@@ -24,11 +24,16 @@ class Figures : public prometheus::Collectable {
       prometheus::ClientMetric value;
       value.gauge.value = metric.value;
       value.counter.value = metric.value;
+      if (!metric.robot.empty()) value.label.push_back({"robot", metric.robot});
+      if (!families.empty() && families.back().name == metric.name) {
+        families.back().metric.push_back(std::move(value));
+        continue;
+      }
       families.push_back(
           {metric.name,
            metric.help,
            is_counter ? prometheus::MetricType::Counter : prometheus::MetricType::Gauge,
-           {value}});
+           {std::move(value)}});
     }
     return families;
   }

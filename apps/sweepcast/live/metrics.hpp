@@ -17,6 +17,7 @@ struct Metric {
   std::string name;  ///< as in "sweepcast_sweeps_sent_total": counters end in _total
   std::string help;
   double value = 0;
+  std::string robot{};  ///< a label, of a figure that each robot has; those follow one another
 };
 
 /// Serves figures as Prometheus text at http://ADDRESS/metrics while it lives.
