@@ -3,11 +3,11 @@ import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
 import { byId, bytesText, countText, make } from './dom';
 import { History, kQuantities, type Quantity } from './history';
+import { LevelChoice } from './level_choice';
 import type { Store } from './state';
 import type { ClientMessage, Hello, RobotStatus } from './wire';
 
 const kChartHeight = 104;
-const kLevels = 6;
 const kLines = { dark: ['#5cb8ff', '#ffb454', '#7ee787', '#ff8fa3', '#c9a0ff'], light: ['#0969da', '#b35900', '#1a7f37', '#c2255c', '#7a3ecf'] };
 const kAxis = { dark: '#aab4c0', light: '#4a5562' };
 const kGrid = { dark: '#2b323c', light: '#dde1e7' };
@@ -16,9 +16,9 @@ export class Dashboard {
   private readonly charts = new Map<Quantity, uPlot>();
   private readonly place = byId('charts');
   private readonly rows = byId('robots');
-  private readonly overrides = new Map<string, HTMLSelectElement>();
+  private readonly choices = new Map<string, LevelChoice>();
   private drawn = ''; // which charts there are, of which robots
-  private canOverride = false;
+  private live = false;
 
   constructor(
     private readonly store: Store,
@@ -33,9 +33,9 @@ export class Dashboard {
   }
 
   begin(hello: Hello): void {
-    this.canOverride = hello.can_override;
+    this.live = hello.source === 'live';
     byId('dashboard-text').textContent =
-      hello.source === 'live' ? 'How each link fares, once a second.' : 'A file has no link: this is what playing it brings to this page.';
+      this.live ? 'How each link fares, once a second.' : 'A file has no link: this is what playing it brings to this page.';
     this.drawn = '';
     this.update();
   }
@@ -43,30 +43,49 @@ export class Dashboard {
   /** Draws what the history has. */
   update(): void {
     if (!this.store.get().dashboard) return;
-    const quantities = (Object.keys(kQuantities) as Quantity[]).filter((quantity) => this.history.has(quantity));
-    const wanted = [...quantities, '/', ...this.history.robots].join(' ');
+    const known = (Object.keys(kQuantities) as Quantity[]).filter((quantity) => this.history.has(quantity));
+    const wanted = [...known, '/', ...this.history.robots].join(' ');
     if (wanted !== this.drawn) {
       this.drawn = wanted;
-      this.rebuild(quantities);
+      this.rebuild(new Set(known));
     }
     for (const [quantity, chart] of this.charts) chart.setData(this.history.columns(quantity));
     this.showRobots();
   }
 
-  private rebuild(quantities: Quantity[]): void {
+  /** A live link's quantities that nobody tells are named, too; a file has none of them. */
+  private rebuild(known: Set<Quantity>): void {
     for (const chart of this.charts.values()) chart.destroy();
     this.charts.clear();
     this.place.replaceChildren();
-    for (const quantity of quantities) {
+    for (const quantity of Object.keys(kQuantities) as Quantity[]) {
+      if (!known.has(quantity) && (!this.live || this.history.robots.length === 0)) continue;
       const info = kQuantities[quantity];
       const box = make('figure', { className: 'chart' });
       const caption = make('figcaption', { title: info.explanation }, make('b', {}, info.label), info.unit ? ` ${info.unit}` : '', make('span', {}, info.explanation));
       box.append(caption);
       this.place.append(box);
+      if (!known.has(quantity)) {
+        box.append(make('p', { className: 'unknown' }, 'not reported'));
+        continue;
+      }
       this.charts.set(quantity, new uPlot(this.options(box), this.history.columns(quantity), box));
     }
-    this.overrides.clear();
-    this.rows.replaceChildren(...this.history.robots.map((robot, i) => this.robotRow(robot, i)));
+    this.showRows();
+  }
+
+  /** Rows stay where they can: somebody may be choosing a level in one. */
+  private showRows(): void {
+    const rows = new Map([...this.rows.querySelectorAll<HTMLElement>('li')].map((row) => [row.dataset['robot']!, row]));
+    this.history.robots.forEach((robot, i) => {
+      if (!rows.has(robot)) this.rows.append(this.robotRow(robot));
+      this.rows.querySelectorAll<HTMLElement>('.swatch')[i]!.style.backgroundColor = this.colourOf(i);
+    });
+    for (const [robot, row] of rows) {
+      if (this.history.robots.includes(robot)) continue;
+      row.remove();
+      this.choices.delete(robot);
+    }
   }
 
   private options(box: HTMLElement): uPlot.Options {
@@ -91,32 +110,21 @@ export class Dashboard {
     return colours[robot % colours.length]!;
   }
 
-  private robotRow(robot: string, i: number): HTMLElement {
+  private robotRow(robot: string): HTMLElement {
+    const choice = new LevelChoice(robot, this.send);
+    this.choices.set(robot, choice);
     const swatch = make('i', { className: 'swatch' });
-    swatch.style.backgroundColor = this.colourOf(i);
-    const row = make('li', {}, swatch, make('b', {}, robot || 'robot'), make('span', { className: 'facts' }));
+    const row = make('li', {}, swatch, make('b', {}, robot || 'robot'), make('span', { className: 'facts' }), choice.element);
     row.dataset['robot'] = robot;
-    if (this.canOverride) row.append(this.override(robot));
     return row;
-  }
-
-  private override(robot: string): HTMLElement {
-    const select = make('select', { ariaLabel: `Level of ${robot}` }, make('option', { value: '' }, 'Level: automatic'));
-    for (let level = 0; level < kLevels; ++level) {
-      const hint = level === 0 ? ' (finest)' : level === kLevels - 1 ? ' (smallest)' : '';
-      select.append(make('option', { value: String(level) }, `Level: ${level}${hint}`));
-    }
-    select.addEventListener('change', () => {
-      this.send({ kind: 'override', robot, level: select.value === '' ? null : Number(select.value) });
-    });
-    this.overrides.set(robot, select);
-    return select;
   }
 
   private showRobots(): void {
     for (const row of this.rows.querySelectorAll<HTMLElement>('li')) {
-      const status = this.history.latest(row.dataset['robot'] ?? '');
-      row.querySelector('.facts')!.textContent = status ? factsOf(status) : 'gone';
+      const robot = row.dataset['robot'] ?? '';
+      const status = this.history.latest(robot);
+      row.querySelector('.facts')!.textContent = status ? factsOf(status, this.live) : 'gone';
+      this.choices.get(robot)?.show(status);
       row.classList.toggle('off', !status?.connected);
     }
   }
@@ -129,14 +137,18 @@ export class Dashboard {
   }
 }
 
-function factsOf(status: RobotStatus): string {
+function factsOf(status: RobotStatus, live: boolean): string {
   if (!status.connected) return 'not connected';
+  const unknown = [status.level === null ? 'level' : '', status.queue_frames === null ? 'queue' : '', status.qoe === null ? 'QoE' : ''].filter(Boolean);
   const facts = [
     status.bytes_per_second === null ? '' : `${bytesText(status.bytes_per_second)}/s`,
     status.level === null ? '' : `level ${status.level}`,
+    status.queue_frames === null ? '' : `queue ${countText(status.queue_frames)}${status.queue_bytes ? ` (${bytesText(status.queue_bytes)})` : ''}`,
     status.age_ms === null ? '' : `${Math.round(status.age_ms)} ms old`,
-    status.drops === null ? '' : `${countText(status.drops)} dropped`,
+    status.drops === null ? '' : `${countText(status.drops)} dropped${status.sender_drops === null ? '' : `, ${countText(status.sender_drops)} before they left`}`,
+    status.qoe === null ? '' : `QoE ${status.qoe.toFixed(1)}`,
     status.sweeps === null ? '' : `${countText(status.sweeps)} sweeps`,
+    live && unknown.length > 0 ? `${unknown.join(', ')} not reported` : '',
   ];
   return facts.filter(Boolean).join(' · ');
 }

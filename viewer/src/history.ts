@@ -92,10 +92,14 @@ export class LocalMeter {
       bytes_per_sweep: this.sweeps > 0 ? this.bytes / this.sweeps : null,
       level: null,
       queue_frames: null,
+      queue_bytes: null,
       age_ms: null,
       drops: null,
+      sender_drops: null,
       qoe: null,
       sweeps: this.total,
+      can_override: false,
+      override: null,
     };
     this.bytes = 0;
     this.sweeps = 0;

@@ -16,7 +16,6 @@ export interface Hello {
   rate_hz: number;
   frames: number | null;
   has_original: boolean;
-  can_override: boolean;
   streams: StreamInfo[];
 }
 
@@ -28,10 +27,14 @@ export interface RobotStatus {
   bytes_per_sweep: number | null;
   level: number | null;
   queue_frames: number | null;
+  queue_bytes: number | null;
   age_ms: number | null;
   drops: number | null;
+  sender_drops: number | null; // of these, those that never left
   qoe: number | null;
   sweeps: number | null;
+  can_override: boolean; // its sender obeys when it is asked for a level
+  override: number | null; // the level that was asked for and is sent
 }
 
 /** Once a second, live only. */
@@ -99,7 +102,6 @@ function readHello(from: Json): Hello {
     rate_hz: rate > 0 ? rate : 10,
     frames: numberOrNull(from['frames']),
     has_original: from['has_original'] === true,
-    can_override: from['can_override'] === true,
     streams: objects(from['streams']).map((stream) => ({
       id: number(stream['id'], 0),
       robot: text(stream['robot']),
@@ -116,10 +118,14 @@ function readRobot(from: Json): RobotStatus {
     bytes_per_sweep: numberOrNull(from['bytes_per_sweep']),
     level: numberOrNull(from['level']),
     queue_frames: numberOrNull(from['queue_frames']),
+    queue_bytes: numberOrNull(from['queue_bytes']),
     age_ms: numberOrNull(from['age_ms']),
     drops: numberOrNull(from['drops']),
+    sender_drops: numberOrNull(from['sender_drops']),
     qoe: numberOrNull(from['qoe']),
     sweeps: numberOrNull(from['sweeps']),
+    can_override: from['can_override'] === true,
+    override: numberOrNull(from['override']),
   };
 }
 

@@ -29,8 +29,10 @@ function sweepMessage(index, { name, frame }, hasOriginal, ageMs) {
 
 export class MockServer {
   /** `sweeps`: { name, frame }; `original(i)`: the bytes of an original, or null. */
-  constructor(sweeps, { live = false, original = null, rate = 10 } = {}) {
-    Object.assign(this, { sweeps, live, original, rate });
+  constructor(sweeps, { live = false, original = null, rate = 10, obeys = true, reports = true } = {}) {
+    // `obeys`: the robot sends at the level that it is asked for; `reports`: its sender tells of itself.
+    Object.assign(this, { sweeps, live, original, rate, obeys, reports });
+    this.level = null; // asked for
     this.damaged = new Set(); // indices whose frame is sent with a byte changed
     this.silent = false;
     this.received = []; // every message of every client
@@ -86,7 +88,7 @@ export class MockServer {
     socket.send(
       JSON.stringify({
         kind: 'hello', version: 1, source: this.live ? 'live' : 'file', title: this.live ? 'rover' : 'drive.sweep', rate_hz: this.rate,
-        frames: this.live ? null : this.sweeps.length, has_original: this.original !== null, can_override: this.live, streams: [sensor],
+        frames: this.live ? null : this.sweeps.length, has_original: this.original !== null, streams: [sensor],
       }),
     );
     this.tellState(client);
@@ -100,6 +102,7 @@ export class MockServer {
     if (message.kind === 'play') client.playing = true;
     if (message.kind === 'pause') client.playing = false;
     if (message.kind === 'seek') [client.index, client.due] = [Math.min(Math.max(message.index, 0), this.sweeps.length - 1), true];
+    if (message.kind === 'override' && this.obeys) this.level = message.level;
     if (message.kind !== 'more') this.tellState(client);
     this.send(client);
   }
@@ -133,8 +136,14 @@ export class MockServer {
     const time = (Date.now() - this.startedAt) / 1000;
     const wave = Math.sin(time / 3);
     const robot = {
-      name: 'rover', connected: true, bytes_per_second: 150e3 + 40e3 * wave, bytes_per_sweep: 15e3 + 4e3 * wave, level: wave > 0 ? 1 : 2,
-      queue_frames: wave > 0.5 ? 2 : 0, age_ms: 90 + 30 * wave, drops: Math.floor(time / 20), qoe: 3.5 + wave, sweeps: Math.floor(time * 10),
+      name: 'rover', connected: true, bytes_per_second: 150e3 + 40e3 * wave, bytes_per_sweep: 15e3 + 4e3 * wave,
+      age_ms: 90 + 30 * wave, drops: Math.floor(time / 20), sweeps: Math.floor(time * 10), can_override: this.obeys && this.reports,
+      ...(this.reports
+        ? {
+            level: this.level ?? (wave > 0 ? 1 : 2), queue_frames: wave > 0.5 ? 2 : 0, queue_bytes: wave > 0.5 ? 21e3 : 0,
+            sender_drops: Math.floor(time / 30), qoe: 13.5 + wave, override: this.level,
+          }
+        : { level: null, queue_frames: null, queue_bytes: null, sender_drops: null, qoe: null, override: null }),
     };
     this.say({ kind: 'status', time_s: time, robots: [robot] });
   }

@@ -192,19 +192,69 @@ test('a point that is clicked tells its numbers', () =>
     assert.match(facts, /measured/);
   }));
 
-test('the dashboard draws a robot, and its level can be chosen', () =>
+const robotsSay = (page, pattern) => page.waitForFunction((source) => new RegExp(source).test(document.getElementById('robots').textContent), pattern.source);
+
+test('the dashboard draws a robot, and its level can be chosen, with keys alone', () =>
   withPage(
     async (page, server) => {
       await page.keyboard.press('d');
       await page.waitForSelector('#charts canvas');
-      await page.waitForFunction(() => /level \d/.test(document.getElementById('robots').textContent));
-      assert.equal(await page.locator('#charts figure').count(), 7);
-      await page.selectOption('#robots select', '3');
-      const wishes = () => server.received.filter(({ kind }) => kind === 'override');
-      while (wishes().length === 0) await page.evaluate(() => new Promise(requestAnimationFrame));
-      assert.deepEqual(wishes(), [{ kind: 'override', robot: 'rover', level: 3 }]);
+      await robotsSay(page, /level [12] · queue \d.*dropped, \d+ before they left · QoE \d+\.\d/);
+      assert.equal(await page.locator('#charts figure canvas').count(), 7);
+      const choice = page.getByLabel('Level of rover');
+      const isChosen = (value) => page.waitForFunction((wanted) => document.querySelector('#robots select').value === wanted, value);
+      await page.focus('#dashboard .close');
+      await page.keyboard.press('Tab');
+      assert.ok(await choice.evaluate((select) => select === document.activeElement), 'Tab leads to the choice');
+      await page.keyboard.type('3');
+      await isChosen('3');
+      await robotsSay(page, /level 3/);
+      await page.waitForFunction(() => document.querySelector('#robots .outcome').textContent === '');
+      await isChosen('3');
+      await choice.selectOption('automatic');
+      await robotsSay(page, /level [12] /);
+      await isChosen('');
+      const wishes = server.received.filter(({ kind }) => kind === 'override');
+      assert.deepEqual(wishes, [{ kind: 'override', robot: 'rover', level: 3 }, { kind: 'override', robot: 'rover', level: null }]);
     },
     { mock: { live: true } },
+  ));
+
+test('a level that somebody else asked for is shown, and one that is not followed is taken back', () =>
+  withPage(
+    async (page, server) => {
+      server.level = 5;
+      await page.keyboard.press('d');
+      const isChosen = (value) => page.waitForFunction((wanted) => document.querySelector('#robots select')?.value === wanted, value);
+      await isChosen('5');
+      server.hear = () => {}; // deaf
+      await page.getByLabel('Level of rover').selectOption('0');
+      await robotsSay(page, /the robot did not follow/);
+      await isChosen('5');
+    },
+    { mock: { live: true } },
+  ));
+
+test('without the right there is no choice of levels', () =>
+  withPage(
+    async (page) => {
+      await page.keyboard.press('d');
+      await robotsSay(page, /level [12] · queue/);
+      assert.ok(await page.isHidden('#robots select'));
+    },
+    { mock: { live: true, obeys: false } },
+  ));
+
+test('what a sender does not tell is said to be not reported', () =>
+  withPage(
+    async (page) => {
+      await page.keyboard.press('d');
+      await robotsSay(page, /level, queue, QoE not reported/);
+      assert.equal(await page.locator('#charts figure').count(), 7);
+      assert.deepEqual(await page.locator('#charts figure:has(.unknown) b').allTextContents(), ['Level', 'Queue', 'QoE']);
+      assert.ok(await page.isHidden('#robots select'));
+    },
+    { mock: { live: true, reports: false } },
   ));
 
 test('a saved picture is a PNG', () =>
