@@ -137,9 +137,8 @@ TEST_F(ViewTool, AnOperatorsLevelIsSentUntilItIsTakenBack) {
   EXPECT_TRUE(told["qoe"].is_number());
   const auto sizes = [&](const std::string& file) {
     std::vector<int> all;
-    for (const auto& frame : run("info " + file + " --json").json()["frames"]) {
-      all.push_back(frame["bytes"].get<int>());
-    }
+    const auto info = run("info " + file + " --json").json();
+    for (const auto& frame : info["frames"]) all.push_back(frame["bytes"].get<int>());
     return all;
   };
   const auto finer = sizes("finer.sweep");
