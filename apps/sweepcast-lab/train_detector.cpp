@@ -20,7 +20,7 @@ namespace {
 struct TrainDetectorCommand {
   std::vector<std::string> drives;
   std::string output;
-  int stride = 2;
+  int stride = 3;
   lab::TrainOptions options;
 };
 

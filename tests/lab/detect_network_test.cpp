@@ -64,8 +64,8 @@ TEST_F(PillarNetworks, ShippedWeightsFindCars) {
     }
     found.push_back(std::move(*boxes));
   }
-  EXPECT_GT(detection_score(truth, found).bev_ap50, 60.0);
-  EXPECT_GT(detection_score(truth, found).bev_ap70, 30.0);
+  EXPECT_GT(detection_score(truth, found).bev_ap50, 85.0);
+  EXPECT_GT(detection_score(truth, found).bev_ap70, 65.0);
   const auto nothing = (*detector)->detect({});
   ASSERT_TRUE(nothing);
   EXPECT_TRUE(nothing->empty());

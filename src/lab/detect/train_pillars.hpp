@@ -12,7 +12,7 @@
 namespace sweepcast::lab {
 
 struct TrainOptions {
-  int steps = 2400;  ///< each on `batch` sweeps
+  int steps = 4600;  ///< each on `batch` sweeps
   int batch = 2;
   double learning_rate = 3e-3;  ///< the highest; it rises over a quarter of the steps, then falls
   std::uint64_t seed = 1;       ///< decides first weights, order and changes of the examples
