@@ -37,7 +37,7 @@ const controls = new Controls(store);
 const dashboard = new Dashboard(store, history, send);
 const meter = new LocalMeter();
 const picker = new Picker(scene, canvas, byId('pick'), byId('pick-ring'));
-const pipeline = new Pipeline(new Decoder(), () => store.get(), { wants, show, damaged, lackOriginal, done: () => connection.grant() });
+const pipeline = new Pipeline(new Decoder(), () => store.get(), { wants, show, damaged, failed, lackOriginal, done: () => connection.grant() });
 new Legend(store, scene);
 
 store.watch((settings, changed) => {
@@ -151,6 +151,10 @@ async function show(sweep: Shown): Promise<void> {
 function damaged(sweep: SweepMessage, message: string): void {
   const which = sweep.name ? `${sweep.index} (${sweep.name})` : String(sweep.index);
   banner.say('frame', 'error', `Sweep ${which} is damaged: ${message}. It is left out; the others are shown.`, true);
+}
+
+function failed(message: string): void {
+  banner.say('page', 'error', `The decoder does not work in this browser (${message}). Load the page again; if that does not help, use another browser.`);
 }
 
 function lackOriginal(message: string): void {

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { after, before, test } from './limited.mjs';
 import { launch, open, waitForSweep } from './browser.mjs';
 import { kTool, makeDrive } from './made_sweeps.mjs';
 import { freePort, Program, startView, waitUntilReady } from './programs.mjs';
