@@ -109,8 +109,9 @@ function begin(message: Hello): void {
   greeted = true;
   hello = message;
   scene.rateHz = message.rate_hz;
-  byId('title').textContent = message.title;
-  document.title = `${message.title || 'sweeps'} – Sweepcast`;
+  const title = titleOf(message);
+  byId('title').textContent = title;
+  document.title = `${title || 'sweeps'} – Sweepcast`;
   setBadge(message.source, message.source === 'live' ? 'live' : 'file');
   controls.offer(message.source === 'live' ? message.streams : [], message.has_original);
   const position = transport.position;
@@ -119,11 +120,16 @@ function begin(message: Hello): void {
   byId('waiting').hidden = scene.newest !== null;
   byId('waiting').textContent =
     message.streams.length === 0 ? 'Waiting for a robot to connect …' : 'Waiting for the first sweep …';
-  // After the server was started again a file goes on where it was.
+  // After the server was started again a file goes on where it was; paused first, or it would go on from there.
   if (cameBack && message.source === 'file') {
-    send({ kind: 'seek', index: position.index });
     send({ kind: position.playing ? 'play' : 'pause' });
+    send({ kind: 'seek', index: position.index });
   }
+}
+
+// Live, the robots are what there is to name.
+function titleOf({ source, title, streams }: Hello): string {
+  return source === 'live' ? [...new Set(streams.map(({ robot }) => robot))].join(', ') : title;
 }
 
 function onSweep(sweep: SweepMessage): void {

@@ -1,12 +1,10 @@
 // The page as the program serves it: files, tokens, and a live stream through the link's emulator.
 import assert from 'node:assert/strict';
-import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
-import { join } from 'node:path';
 import { after, before, test } from './limited.mjs';
 import { launch, open, waitForSweep } from './browser.mjs';
 import { kTool, makeDrive } from './made_sweeps.mjs';
-import { freePort, Program, startView, waitUntilReady } from './programs.mjs';
+import { freePort, startLive, startView } from './programs.mjs';
 
 const kSweeps = 12;
 const kPage = new URL('../dist/index.html', import.meta.url);
@@ -86,22 +84,10 @@ test('with a token only who has it sees anything', async () => {
 });
 
 test('a live stream through the emulator: shown, counted, missed when it stops, shown again', async () => {
-  const key = join(drive.folder, 'rover.key');
-  execFileSync(kTool, ['keygen', key, '--robot', 'rover'], { stdio: 'pipe' });
-  const [viewPort, listenPort, relayPort] = [await freePort(), await freePort(), await freePort()];
-  const programs = [];
-  const start = (...args) => {
-    const program = new Program(...args);
-    programs.push(program);
-    return program;
-  };
-  const send = () => start('send', drive.sweeps, '--to', `127.0.0.1:${relayPort}`, '--key', key, '--loop');
-  const receive = start('receive', '--listen', `127.0.0.1:${listenPort}`, '--keys', key, '-o', join(drive.folder, 'received'), '--view', viewPort);
-  start('emulate-link', '--listen', relayPort, '--to', listenPort, '--trace', 'paper', '--delay', 20);
-  await waitUntilReady(receive, viewPort);
-  const { page, complaints, close } = await open(browser, `http://127.0.0.1:${viewPort}/`);
+  const live = await startLive(drive.folder);
+  const { page, complaints, close } = await open(browser, live.url);
   try {
-    let sender = send();
+    let sender = live.send(drive.sweeps);
     await waitForSweep(page);
     assert.equal(await text(page, 'badge'), 'live');
     await page.keyboard.press('d');
@@ -109,15 +95,15 @@ test('a live stream through the emulator: shown, counted, missed when it stops, 
     await sender.stop();
     await said(page, /stopped|No sweep has arrived/);
     const before = await text(page, 'robots');
-    sender = send();
+    sender = live.send(drive.sweeps);
     await page.waitForFunction((was) => document.getElementById('robots').textContent !== was, before);
     await page.waitForFunction(() => !/No sweep has arrived/.test(document.getElementById('banner').textContent));
     assert.deepEqual(complaints, []);
   } catch (error) {
-    error.message += programs.map(({ child, said: words }) => `\n${child.spawnargs[1]}: ${words.slice(-500)}`).join('');
+    error.message += live.said();
     throw error;
   } finally {
     await close();
-    for (const program of programs) await program.stop();
+    await live.stop();
   }
 });
