@@ -6,6 +6,7 @@
 start() {
   local name=$1
   shift
+  : >"$live/$name" # there is something to look at before it runs
   "$@" >"$live/$name" 2>&1 &
   live_pids+=($!)
 }
@@ -67,10 +68,10 @@ show_live() {
     echo "Live at $address: open that in a browser on this machine. Ctrl-C ends it."
     echo "From another machine: ssh -L ${address##*:}:127.0.0.1:${address##*:} $(id -un)@$(uname -n), then open it there."
   fi
-  wait -n "${live_pids[@]}" || true
+  wait -n "${live_pids[@]}" && exit 0 # a signal to them alone ends them without a fault
   for name in receive emulate-link send; do
     cat "$live/$name"
   done >&2
-  echo "quickstart: one of the programs has ended, which none should; above is what they said" >&2
+  echo "quickstart: one of the programs has failed; above is what they said" >&2
   exit 1
 }
