@@ -11,14 +11,14 @@ import { startLive } from './programs.mjs';
 const kRoot = fileURLToPath(new URL('../..', import.meta.url));
 const [input = join(kRoot, 'out/drive'), output = join(kRoot, 'docs/images/viewer.png')] = process.argv.slice(2).map((path) => resolve(path));
 const kSettleMs = 3000; // until colours have followed the points
-const kChartsMs = 75_000; // as long as the charts should be
+const kChartsMs = 30_000; // as long as the charts should be
 
 const keys = (...list) => async (page) => {
   for (const key of list) await page.keyboard.press(key);
 };
 
 // Name: how the page is opened, what is done to it, how long then.
-const kReadme = { view: { width: 1440, height: 810 }, act: keys('d'), wait: kChartsMs };
+const kReadme = { view: { width: 1280, height: 720 }, act: keys('d'), wait: kChartsMs };
 const kFaces = {
   page: {},
   light: { view: { scheme: 'light' } },

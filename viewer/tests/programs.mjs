@@ -61,13 +61,18 @@ export async function startLive(folder, { relay = true } = {}) {
   const [viewPort, port, relayPort] = [await freePort(), await freePort(), await freePort()];
   const programs = [];
   const start = (...args) => programs[programs.push(new Program(...args)) - 1];
-  const receive = start('receive', '--listen', port, '--keys', key, '-o', join(folder, 'received'), '--view', viewPort);
+  const view = ['--listen', port, '--keys', key, '-o', join(folder, 'received'), '--view', viewPort];
+  let receive;
+  const startServer = async () => {
+    receive = start('receive', ...view);
+    await waitUntilReady(receive, viewPort);
+  };
   if (relay) start('emulate-link', '--listen', relayPort, '--to', port, '--trace', 'paper', '--delay', 20);
-  await waitUntilReady(receive, viewPort);
+  await startServer();
   return {
     url: `http://127.0.0.1:${viewPort}/`,
-    port: viewPort,
-    receive,
+    startServer,
+    stopServer: () => receive.stop(),
     send: (input, ...more) => start('send', input, '--to', `127.0.0.1:${relay ? relayPort : port}`, '--key', key, '--loop', ...more),
     said: () => programs.map(({ child, said }) => `\n${child.spawnargs[1]}: ${said.slice(-500)}`).join(''),
     stop: async () => {

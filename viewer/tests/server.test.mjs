@@ -1,10 +1,12 @@
 // The page as the program serves it: files, tokens, and a live stream through the link's emulator.
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
+import { readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
 import { after, before, test } from './limited.mjs';
 import { launch, open, waitForSweep } from './browser.mjs';
 import { kTool, makeDrive } from './made_sweeps.mjs';
 import { freePort, startLive, startView } from './programs.mjs';
+import { readSweepFile } from './sweep_file.mjs';
 
 const kSweeps = 12;
 const kPage = new URL('../dist/index.html', import.meta.url);
@@ -69,6 +71,24 @@ test('a file plays, scrubs, is compared with its original, and survives a restar
   }
 });
 
+test('a damaged frame of a file is named, and the others are shown', async () => {
+  const bytes = readFileSync(drive.file);
+  const frame = readSweepFile(bytes)[4].frame; // a part of `bytes`
+  frame[frame.length >> 1] ^= 0x55;
+  const file = join(drive.folder, 'damaged.sweep');
+  writeFileSync(file, bytes);
+  const view = await startView(await freePort(), file);
+  const { page, complaints, close } = await open(browser, view.url);
+  try {
+    await said(page, /damaged\.sweep: frame 4: .* is damaged/);
+    await placeIs(page, `7 / ${kSweeps}`);
+    assert.deepEqual(complaints, []);
+  } finally {
+    await close();
+    await view.stop();
+  }
+});
+
 test('with a token only who has it sees anything', async () => {
   const view = await startView(await freePort(), drive.file, '--token', 'let-me-in');
   const { page, complaints, close } = await open(browser, `${view.url}?token=let-me-in`);
@@ -83,9 +103,9 @@ test('with a token only who has it sees anything', async () => {
   }
 });
 
-test('a live stream through the emulator: shown, counted, missed when it stops, shown again', async () => {
+test('a live stream through the emulator: shown, counted, missed when it stops, shown again, also by a server that was started again', async () => {
   const live = await startLive(drive.folder);
-  const { page, complaints, close } = await open(browser, live.url);
+  const { page, complaints, close } = await open(browser, live.url, { ignore: /ERR_CONNECTION_REFUSED|WebSocket connection/ });
   try {
     let sender = live.send(drive.sweeps);
     await waitForSweep(page);
@@ -98,6 +118,14 @@ test('a live stream through the emulator: shown, counted, missed when it stops, 
     sender = live.send(drive.sweeps);
     await page.waitForFunction((was) => document.getElementById('robots').textContent !== was, before);
     await page.waitForFunction(() => !/No sweep has arrived/.test(document.getElementById('banner').textContent));
+
+    await live.stopServer();
+    await said(page, /No connection to the server/);
+    await live.startServer();
+    await page.waitForFunction(() => !/No connection/.test(document.getElementById('banner').textContent));
+    await waitForSweep(page);
+    const shown = await text(page, 'robots');
+    await page.waitForFunction((was) => document.getElementById('robots').textContent !== was, shown);
     assert.deepEqual(complaints, []);
   } catch (error) {
     error.message += live.said();
