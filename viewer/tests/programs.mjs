@@ -15,6 +15,8 @@ export async function freePort() {
   return port;
 }
 
+const kPatienceMs = 30_000;
+
 const running = new Set();
 process.on('exit', () => running.forEach((child) => child.kill('SIGKILL')));
 
@@ -30,14 +32,17 @@ export class Program {
 
   async stop() {
     if (this.child.exitCode === null) this.child.kill('SIGTERM');
+    const killer = setTimeout(() => this.child.kill('SIGKILL'), kPatienceMs);
     await this.ended;
+    clearTimeout(killer);
   }
 }
 
 /** Waits until the server at `port` is ready. */
 export async function waitUntilReady(program, port) {
-  for (;;) {
+  for (const until = performance.now() + kPatienceMs; ; ) {
     if (program.child.exitCode !== null) throw new Error(`it ended: ${program.said}`);
+    if (performance.now() > until) throw new Error(`it does not answer at port ${port}: ${program.said}`);
     const answer = await fetch(`http://127.0.0.1:${port}/healthz`).catch(() => null);
     if (answer?.status === 200) return;
     await new Promise((resolve) => setTimeout(resolve, 50));
