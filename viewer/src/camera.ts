@@ -12,7 +12,7 @@ interface Pose {
 
 const kPoses: Record<View, Pose> = {
   orbit: { from: [-22, -26, 20], at: [2, 0, -1] },
-  follow: { from: [-17, 0, 8], at: [9, 0, -1] },
+  follow: { from: [-17, 0, 8.5], at: [7, 0, -2.5] },
   top: { from: [0, 0, 75], at: [0.01, 0, 0] },
   first: { from: [0, 0, 0], at: [5, 0, -0.2] },
 };

@@ -8,6 +8,9 @@ export interface Decoded {
   decodeMs: number;
 }
 
+/** The decoder itself does not work, whatever the frame. */
+export class DecoderFailed extends Error {}
+
 interface Waiting {
   resolve(decoded: Decoded): void;
   reject(error: Error): void;
@@ -24,16 +27,16 @@ export class Decoder {
       const reply = event.data;
       const waiting = this.waiting.get(reply.id);
       this.waiting.delete(reply.id);
-      if ('message' in reply) waiting?.reject(new Error(reply.message));
+      if ('message' in reply) waiting?.reject(new (reply.fatal ? DecoderFailed : Error)(reply.message));
       else waiting?.resolve(reply);
     };
     this.worker.onerror = () => {
-      for (const waiting of this.waiting.values()) waiting.reject(new Error('the decoder could not be started'));
+      for (const waiting of this.waiting.values()) waiting.reject(new DecoderFailed('its worker could not be started'));
       this.waiting.clear();
     };
   }
 
-  /** Rejects with the decoder's message where the frame is damaged. */
+  /** Rejects with the decoder's message where the frame is damaged, with DecoderFailed where it is not the frame. */
   decode(frame: Uint8Array, options: DecodeOptions, original: Float32Array | null): Promise<Decoded> {
     const request: DecodeRequest = { id: this.next++, frame, options, original, token: this.token };
     return new Promise((resolve, reject) => {

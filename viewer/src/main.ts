@@ -37,7 +37,7 @@ const controls = new Controls(store);
 const dashboard = new Dashboard(store, history, send);
 const meter = new LocalMeter();
 const picker = new Picker(scene, canvas, byId('pick'), byId('pick-ring'));
-const pipeline = new Pipeline(new Decoder(), () => store.get(), { wants, show, damaged, lackOriginal, done: () => connection.grant() });
+const pipeline = new Pipeline(new Decoder(), () => store.get(), { wants, show, damaged, failed, lackOriginal, done: () => connection.grant() });
 new Legend(store, scene);
 
 store.watch((settings, changed) => {
@@ -109,8 +109,9 @@ function begin(message: Hello): void {
   greeted = true;
   hello = message;
   scene.rateHz = message.rate_hz;
-  byId('title').textContent = message.title;
-  document.title = `${message.title || 'sweeps'} – Sweepcast`;
+  const title = titleOf(message);
+  byId('title').textContent = title;
+  document.title = `${title || 'sweeps'} – Sweepcast`;
   setBadge(message.source, message.source === 'live' ? 'live' : 'file');
   controls.offer(message.source === 'live' ? message.streams : [], message.has_original);
   const position = transport.position;
@@ -119,11 +120,16 @@ function begin(message: Hello): void {
   byId('waiting').hidden = scene.newest !== null;
   byId('waiting').textContent =
     message.streams.length === 0 ? 'Waiting for a robot to connect …' : 'Waiting for the first sweep …';
-  // After the server was started again a file goes on where it was.
+  // After the server was started again a file goes on where it was; paused first, or it would go on from there.
   if (cameBack && message.source === 'file') {
-    send({ kind: 'seek', index: position.index });
     send({ kind: position.playing ? 'play' : 'pause' });
+    send({ kind: 'seek', index: position.index });
   }
+}
+
+// Live, the robots are what there is to name.
+function titleOf({ source, title, streams }: Hello): string {
+  return source === 'live' ? [...new Set(streams.map(({ robot }) => robot))].join(', ') : title;
 }
 
 function onSweep(sweep: SweepMessage): void {
@@ -151,6 +157,10 @@ async function show(sweep: Shown): Promise<void> {
 function damaged(sweep: SweepMessage, message: string): void {
   const which = sweep.name ? `${sweep.index} (${sweep.name})` : String(sweep.index);
   banner.say('frame', 'error', `Sweep ${which} is damaged: ${message}. It is left out; the others are shown.`, true);
+}
+
+function failed(message: string): void {
+  banner.say('page', 'error', `The decoder does not work in this browser (${message}). Load the page again; if that does not help, use another browser.`);
 }
 
 function lackOriginal(message: string): void {

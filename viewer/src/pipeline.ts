@@ -1,5 +1,5 @@
 // From a message to the screen: fetch the original where it is wanted, decode, draw, ask for more.
-import type { Decoder } from './decoder';
+import { DecoderFailed, type Decoder } from './decoder';
 import { serverUrl } from './socket';
 import type { Original, Shown } from './sweep';
 import type { Settings } from './state';
@@ -14,6 +14,8 @@ export interface PipelineEvents {
   /** Draws it; resolves when that is done. */
   show(sweep: Shown): Promise<void>;
   damaged(sweep: SweepMessage, message: string): void;
+  /** Nothing can be decoded here. */
+  failed(message: string): void;
   lackOriginal(message: string): void;
   /** One sweep is done with, for good or ill. */
   done(): void;
@@ -84,7 +86,9 @@ export class Pipeline {
       await this.drawn;
       this.drawn = this.events.show({ message: sweep, original, ...decoded }).then(done);
     } catch (error) {
-      this.events.damaged(sweep, error instanceof Error ? error.message : String(error));
+      const message = error instanceof Error ? error.message : String(error);
+      if (error instanceof DecoderFailed) this.events.failed(message);
+      else this.events.damaged(sweep, message);
       done();
     }
   }

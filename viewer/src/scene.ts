@@ -11,6 +11,11 @@ import type { Cloud } from './wasm_decoder';
 
 const kGround = { dark: 0x0e1116, light: 0xf4f5f7 };
 
+/** Few points are drawn larger, so that surfaces still read as such; smoothed, since each sweep has another number. */
+function sparseness(points: number): number {
+  return Math.min(Math.max(Math.sqrt(40_000 / Math.max(points, 1)), 1), 1.8);
+}
+
 /** Part of the canvas, in pixels of the page from its top left. */
 export interface Pane {
   x: number;
@@ -45,6 +50,7 @@ export class SweepScene {
   private readonly axes = makeAxes();
   private pending = 0;
   private waiting: (() => void)[] = [];
+  private sparse = 1; // how much larger than chosen points are drawn
   private smoothed: [number, number] | null = null;
   rateHz = 10;
 
@@ -76,6 +82,9 @@ export class SweepScene {
     if (!spare) this.decoded.add(points.object);
     this.sweeps.unshift({ shown: sweep, points, mode: null });
     this.trim();
+    const sparse = sparseness(sweep.cloud.points);
+    this.sparse = this.newest ? this.sparse + (sparse - this.sparse) * 0.3 : sparse;
+    this.size();
     points.set(sweep.cloud.points, sweep.cloud.xyz, sweep.cloud.filled);
     if (sweep.original) this.original.set(sweep.original.points, sweep.original.xyz, null);
     this.colour();
@@ -92,7 +101,7 @@ export class SweepScene {
   apply(settings: Readonly<Settings>, changed: ReadonlySet<keyof Settings>): void {
     this.settings = settings;
     const { uniforms } = this.style;
-    uniforms.size.value = settings.pointSize * this.renderer.getPixelRatio();
+    this.size();
     uniforms.nearest.value = settings.view === 'first' ? 1.4 : 2; // at the sensor all points are near
     if (changed.has('map') || changed.has('dark')) this.style.setMap(settings.map, settings.dark);
     if (changed.has('dark')) this.paintGround();
@@ -180,6 +189,10 @@ export class SweepScene {
     }
     const [a, b] = this.smoothed;
     this.smoothed = [a + (low - a) * 0.2, b + (high - b) * 0.2];
+  }
+
+  private size(): void {
+    this.style.uniforms.size.value = this.settings.pointSize * this.sparse * this.renderer.getPixelRatio();
   }
 
   private trim(): void {

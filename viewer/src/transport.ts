@@ -2,6 +2,7 @@
 import { byId } from './dom';
 import type { ClientMessage, PlayState } from './wire';
 
+const kSeekMs = 2000; // a sought sweep comes sooner, unless it is damaged
 const kSpeeds = [0.25, 0.5, 1, 2, 4];
 
 export class Transport {
@@ -13,6 +14,7 @@ export class Transport {
   private state: PlayState = { kind: 'state', index: 0, playing: false, speed: 1, loop: false };
   private frames = 0;
   private scrubbing = false;
+  private soughtUntil = 0; // sweeps that were on their way before the sought one do not move the place
 
   constructor(private readonly send: (message: ClientMessage) => void) {
     this.play.addEventListener('click', () => this.toggle());
@@ -48,6 +50,8 @@ export class Transport {
   /** A sweep is on the screen. */
   setShown(index: number): void {
     if (this.bar.hidden) return;
+    if (index !== this.state.index && performance.now() < this.soughtUntil) return;
+    this.soughtUntil = 0;
     this.state = { ...this.state, index };
     this.show();
   }
@@ -69,6 +73,7 @@ export class Transport {
     if (this.bar.hidden) return;
     const place = Math.min(Math.max(index, 0), this.frames - 1);
     this.state = { ...this.state, index: place };
+    this.soughtUntil = performance.now() + kSeekMs;
     this.send({ kind: 'seek', index: place });
     this.show();
   }

@@ -89,6 +89,11 @@ export class WasmDecoder {
         proc_exit: () => {
           throw new Error('the decoder ran out of memory');
         },
+        clock_time_get: (_clock: number, _precision: bigint, at: number): number => {
+          const nanoseconds = BigInt(Math.round(performance.now() * 1e6));
+          new DataView(wasm!.memory.buffer).setBigUint64(at, nanoseconds, true);
+          return 0;
+        },
       },
     };
     const instance = await WebAssembly.instantiate(module, imports);

@@ -37,7 +37,12 @@ export async function open(browser, url, { width = 1280, height = 800, scheme = 
   return { page, complaints, close: () => context.close() };
 }
 
-/** Waits until a sweep is on the screen. */
+/** Waits until a sweep is on the screen; where the page says what is wrong, fails with its words. */
 export async function waitForSweep(page) {
-  await page.waitForFunction(() => document.getElementById('fact-points').textContent !== '–');
+  const error = await page.waitForFunction(() => {
+    if (document.getElementById('fact-points').textContent !== '–') return 'none';
+    return document.querySelector('#banner .error span')?.textContent;
+  });
+  const words = await error.jsonValue();
+  if (words !== 'none') throw new Error(`the page says: ${words}`);
 }

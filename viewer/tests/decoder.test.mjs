@@ -4,7 +4,7 @@ import { execFileSync } from 'node:child_process';
 import { mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { after, before, test } from './limited.mjs';
 import { fileURLToPath } from 'node:url';
 import { loadDecoder, loadModule } from './load.mjs';
 import { kTool, makeDrive } from './made_sweeps.mjs';

@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
-import { after, before, test } from 'node:test';
+import { after, before, test } from './limited.mjs';
 import { launch, open, waitForSweep } from './browser.mjs';
 import { comparePictures } from './pictures.mjs';
 import { framesOf, makeDrive } from './made_sweeps.mjs';
@@ -138,6 +138,21 @@ test('without WebGL the page says what to do', async () => {
     await said(page, /offers no WebGL/);
   } finally {
     await context.close();
+    await server.stop();
+  }
+});
+
+test('where the decoder does not start, the page says that it is not the sweeps', async () => {
+  const server = new MockServer(sweeps);
+  await server.start();
+  const { page, close } = await open(browser, 'about:blank');
+  try {
+    await page.route('**/*.wasm', (route) => route.fulfill({ status: 200, body: 'no WebAssembly' }));
+    await page.goto(`http://127.0.0.1:${server.port}/`);
+    await said(page, /The decoder does not work in this browser/);
+    await assert.rejects(waitForSweep(page), /the page says: The decoder does not work/);
+  } finally {
+    await close();
     await server.stop();
   }
 });

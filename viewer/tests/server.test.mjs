@@ -1,12 +1,12 @@
 // The page as the program serves it: files, tokens, and a live stream through the link's emulator.
 import assert from 'node:assert/strict';
-import { execFileSync } from 'node:child_process';
-import { readFileSync } from 'node:fs';
+import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { after, before, test } from './limited.mjs';
 import { launch, open, waitForSweep } from './browser.mjs';
 import { kTool, makeDrive } from './made_sweeps.mjs';
-import { freePort, Program, startView, waitUntilReady } from './programs.mjs';
+import { freePort, startLive, startView } from './programs.mjs';
+import { readSweepFile } from './sweep_file.mjs';
 
 const kSweeps = 12;
 const kPage = new URL('../dist/index.html', import.meta.url);
@@ -71,6 +71,24 @@ test('a file plays, scrubs, is compared with its original, and survives a restar
   }
 });
 
+test('a damaged frame of a file is named, and the others are shown', async () => {
+  const bytes = readFileSync(drive.file);
+  const frame = readSweepFile(bytes)[4].frame; // a part of `bytes`
+  frame[frame.length >> 1] ^= 0x55;
+  const file = join(drive.folder, 'damaged.sweep');
+  writeFileSync(file, bytes);
+  const view = await startView(await freePort(), file);
+  const { page, complaints, close } = await open(browser, view.url);
+  try {
+    await said(page, /damaged\.sweep: frame 4: .* is damaged/);
+    await placeIs(page, `7 / ${kSweeps}`);
+    assert.deepEqual(complaints, []);
+  } finally {
+    await close();
+    await view.stop();
+  }
+});
+
 test('with a token only who has it sees anything', async () => {
   const view = await startView(await freePort(), drive.file, '--token', 'let-me-in');
   const { page, complaints, close } = await open(browser, `${view.url}?token=let-me-in`);
@@ -85,23 +103,11 @@ test('with a token only who has it sees anything', async () => {
   }
 });
 
-test('a live stream through the emulator: shown, counted, missed when it stops, shown again', async () => {
-  const key = join(drive.folder, 'rover.key');
-  execFileSync(kTool, ['keygen', key, '--robot', 'rover'], { stdio: 'pipe' });
-  const [viewPort, listenPort, relayPort] = [await freePort(), await freePort(), await freePort()];
-  const programs = [];
-  const start = (...args) => {
-    const program = new Program(...args);
-    programs.push(program);
-    return program;
-  };
-  const send = () => start('send', drive.sweeps, '--to', `127.0.0.1:${relayPort}`, '--key', key, '--loop');
-  const receive = start('receive', '--listen', `127.0.0.1:${listenPort}`, '--keys', key, '-o', join(drive.folder, 'received'), '--view', viewPort);
-  start('emulate-link', '--listen', relayPort, '--to', listenPort, '--trace', 'paper', '--delay', 20);
-  await waitUntilReady(receive, viewPort);
-  const { page, complaints, close } = await open(browser, `http://127.0.0.1:${viewPort}/`);
+test('a live stream through the emulator: shown, counted, missed when it stops, shown again, also by a server that was started again', async () => {
+  const live = await startLive(drive.folder);
+  const { page, complaints, close } = await open(browser, live.url, { ignore: /ERR_CONNECTION_REFUSED|WebSocket connection/ });
   try {
-    let sender = send();
+    let sender = live.send(drive.sweeps);
     await waitForSweep(page);
     assert.equal(await text(page, 'badge'), 'live');
     await page.keyboard.press('d');
@@ -109,15 +115,23 @@ test('a live stream through the emulator: shown, counted, missed when it stops, 
     await sender.stop();
     await said(page, /stopped|No sweep has arrived/);
     const before = await text(page, 'robots');
-    sender = send();
+    sender = live.send(drive.sweeps);
     await page.waitForFunction((was) => document.getElementById('robots').textContent !== was, before);
     await page.waitForFunction(() => !/No sweep has arrived/.test(document.getElementById('banner').textContent));
+
+    await live.stopServer();
+    await said(page, /No connection to the server/);
+    await live.startServer();
+    await page.waitForFunction(() => !/No connection/.test(document.getElementById('banner').textContent));
+    await waitForSweep(page);
+    const shown = await text(page, 'robots');
+    await page.waitForFunction((was) => document.getElementById('robots').textContent !== was, shown);
     assert.deepEqual(complaints, []);
   } catch (error) {
-    error.message += programs.map(({ child, said: words }) => `\n${child.spawnargs[1]}: ${words.slice(-500)}`).join('');
+    error.message += live.said();
     throw error;
   } finally {
     await close();
-    for (const program of programs) await program.stop();
+    await live.stop();
   }
 });
