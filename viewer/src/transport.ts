@@ -14,7 +14,7 @@ export class Transport {
   private state: PlayState = { kind: 'state', index: 0, playing: false, speed: 1, loop: false };
   private frames = 0;
   private scrubbing = false;
-  private soughtUntil = 0; // sweeps that were on their way before the sought one do not move the place
+  private soughtUntil = 0; // what was on its way before the sought sweep does not move the place
 
   constructor(private readonly send: (message: ClientMessage) => void) {
     this.play.addEventListener('click', () => this.toggle());
@@ -43,7 +43,8 @@ export class Transport {
   }
 
   setState(state: PlayState): void {
-    this.state = state;
+    const index = performance.now() < this.soughtUntil ? this.state.index : state.index; // it may answer what came before
+    this.state = { ...state, index };
     this.show();
   }
 
