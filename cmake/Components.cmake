@@ -12,9 +12,14 @@ find_package(liblzf REQUIRED)  # PCD's binary_compressed
 set(SWEEPCAST_COMPONENTS "")
 
 # sweepcast_component(NAME FOUND PACKAGE WHAT): sets SWEEPCAST_WITH_<NAME> and says what is missing.
+set(SWEEPCAST_WITHOUT "" CACHE STRING "Components to leave out though present, as in torch;openvdb")
 function(sweepcast_component name found package what)
   string(TOUPPER ${name} upper)
-  if(found)
+  if(name IN_LIST SWEEPCAST_WITHOUT)
+    set(SWEEPCAST_WITH_${upper} OFF PARENT_SCOPE)
+    set(SWEEPCAST_COMPONENTS "${SWEEPCAST_COMPONENTS}-${name} " PARENT_SCOPE)
+    message(STATUS "${name}: OFF, as SWEEPCAST_WITHOUT says")
+  elseif(found)
     set(SWEEPCAST_WITH_${upper} ON PARENT_SCOPE)
     set(SWEEPCAST_COMPONENTS "${SWEEPCAST_COMPONENTS}+${name} " PARENT_SCOPE)
     message(STATUS "${name}: on")
