@@ -3,10 +3,14 @@
 // operations and the build forbids fused multiply-add.
 #pragma once
 
+#include <cmath>
+
 namespace sweepcast {
 
 inline constexpr double kPi = 3.14159265358979323846;
+inline constexpr double kTwoPi = 2.0 * kPi;
 inline constexpr double kDegree = kPi / 180.0;  ///< radians
+inline constexpr float kTurnsPerRadian = static_cast<float>(1.0 / kTwoPi);
 
 struct SinCos {
   double sin = 0.0;
@@ -19,6 +23,11 @@ struct SinCos {
 /// Angle of the point (x, y) from the x axis, radians in [-pi, pi]; 0 at the origin.
 /// Error under 1e-15. Taylor series after halving the angle twice.
 [[nodiscard]] double arc_tangent(double y, double x) noexcept;
+
+/// What is left of `turns` by the nearest whole number of them: in [-0.5, 0.5).
+[[nodiscard]] inline double wrap(double turns) noexcept {
+  return turns - std::floor(turns + 0.5);
+}
 
 /// As above in float, for many points at a time: error under 5e-7 rad. A minimax polynomial
 /// (Remez, degree 7 in t^2 on [0, 1]); free of branches, so that compilers vectorise loops over it.

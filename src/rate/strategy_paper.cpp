@@ -12,7 +12,7 @@ namespace {
 /// Buffer switching: sweeps between two switches, in which a switch comes to bear on the queue.
 constexpr int kSettle = 10;
 /// Historical memory: sweeps over which the length of the queue is averaged.
-constexpr std::size_t kMemory = 5;
+constexpr std::size_t kRememberedQueues = 5;
 /// A mean queue above this is too long: one level coarser. Frames.
 constexpr double kLongQueue = 3.0;
 /// A queue that stays at or below this is stable. Frames.
@@ -20,7 +20,7 @@ constexpr std::size_t kStableQueue = 1;
 /// Quality improvement attempts: sweeps that the queue must have been stable for.
 constexpr int kPatience = 20;
 /// An attempt has failed when the queue has grown by more than this. Frames.
-constexpr std::size_t kGrowth = 3;
+constexpr std::size_t kQueueGrowth = 3;
 /// An attempt has succeeded when it has gone on for so many sweeps.
 constexpr int kTrial = 100;
 /// What a failed attempt at a level multiplies the patience before the next one by, and the most.
@@ -34,7 +34,7 @@ class Paper final : public Strategy {
   Choice decide(const LinkView& view) override {
     remember(view.queued_frames);
     if (--settling_ <= 0) {
-      if (trying_ && view.queued_frames > queue_before_ + kGrowth) {
+      if (trying_ && view.queued_frames > queue_before_ + kQueueGrowth) {
         roll_back();
       } else if (history_.mean() > kLongQueue && level_ + 1 < kLevels) {
         switch_to(level_ + 1);
@@ -78,11 +78,11 @@ class Paper final : public Strategy {
   }
 
   std::size_t level_ = 0;
-  Recent history_{kMemory};  ///< queue lengths
-  int stable_ = 0;           ///< sweeps for which the queue has been stable
-  int settling_ = 0;         ///< sweeps until the next switch is allowed
-  bool trying_ = false;      ///< an attempt goes on
-  int trial_ = 0;            ///< sweeps until it has succeeded
+  Recent history_{kRememberedQueues};  ///< queue lengths
+  int stable_ = 0;                     ///< sweeps for which the queue has been stable
+  int settling_ = 0;                   ///< sweeps until the next switch is allowed
+  bool trying_ = false;                ///< an attempt goes on
+  int trial_ = 0;                      ///< sweeps until it has succeeded
   std::size_t queue_before_ = 0;
   std::array<int, kLevels> patience_{};  ///< before an attempt at each level
 };

@@ -14,7 +14,7 @@ namespace {
 constexpr double kMemory = 0.5;
 /// Before anything is known, and at least, bytes a second.
 constexpr double kFirstLevelRate = 300e3;
-constexpr double kLeastRate = 1e3;
+constexpr double kSlowestRate = 1e3;
 /// A plan is good for rates that differ from its own by no more than this share.
 constexpr double kSameRate = 0.02;
 
@@ -22,7 +22,7 @@ class PlannedLevels final : public Strategy {
  public:
   Choice decide(const LinkView& view) override {
     rate_.add(view.sent_bytes, view.busy_s);
-    const double rate = std::max(kLeastRate, rate_.bytes_per_s());
+    const double rate = std::max(kSlowestRate, rate_.bytes_per_s());
     if (!plan_ || std::abs(rate - planned_rate_) > kSameRate * planned_rate_) {
       plan_.emplace(view.level_bytes, rate * view.period_s);
       planned_rate_ = rate;

@@ -11,8 +11,6 @@
 namespace sweepcast {
 namespace {
 
-constexpr double kTurn = 2.0 * kPi;
-
 // Encoders and column counts of spinning LiDARs, and other round numbers.
 constexpr std::array kEncoders{360,  400,  450,  500,  512,  600,   720,   800,   900,
                                1000, 1024, 1200, 1440, 1500, 1600,  1800,  2000,  2048,
@@ -34,10 +32,6 @@ std::vector<std::vector<Sample>> by_beam(std::span<const BeamSamples> sweeps, st
   return samples;
 }
 
-double wrap(double phase) {
-  return phase - std::floor(phase + 0.5);
-}
-
 // Mean phasor of the samples' positions between ticks. Far points weigh more: coordinates are
 // rounded, so that the azimuths of near ones are coarse.
 std::complex<double> phasor(std::span<const Sample> samples, double ticks, double lateral) {
@@ -45,7 +39,7 @@ std::complex<double> phasor(std::span<const Sample> samples, double ticks, doubl
   double im = 0.0;
   double weights = 0.0;
   for (const Sample& s : samples) {
-    const double phase = ticks * (s.turn - lateral * s.inverse_rho / kTurn);
+    const double phase = ticks * (s.turn - lateral * s.inverse_rho / kTwoPi);
     const double weight = 1.0 / (s.inverse_rho + 0.1);
     const SinCos at = unit_phasor(wrap(phase));
     re += weight * at.cos;
@@ -81,13 +75,13 @@ BeamAzimuth fit_beam(std::span<const Sample> samples, double ticks, bool search)
   BeamAzimuth fit;
   if (samples.empty()) return fit;
   if (search) fit.lateral_m = search_lateral(thinned(samples, 600), ticks);
-  fit.phase = std::arg(phasor(samples, ticks, fit.lateral_m)) / kTurn;
+  fit.phase = std::arg(phasor(samples, ticks, fit.lateral_m)) / kTwoPi;
   // Least squares of the wrapped phase over 1 and 1/rho; robust against points between ticks. A
   // weak pull keeps the lateral offset of a beam that sees one distance.
   for (int round = 0; round < 4; ++round) {
     double w = 0, q = 0, qq = 1e-4, e = 0, qe = 0;
     for (const Sample& s : samples) {
-      const double model = fit.phase + ticks * fit.lateral_m * s.inverse_rho / kTurn;
+      const double model = fit.phase + ticks * fit.lateral_m * s.inverse_rho / kTwoPi;
       const double miss = wrap(ticks * s.turn - model);
       const double weight = 1.0 / ((s.inverse_rho + 0.1) * (1.0 + 60.0 * miss * miss));
       w += weight;
@@ -99,7 +93,7 @@ BeamAzimuth fit_beam(std::span<const Sample> samples, double ticks, bool search)
     const double det = w * qq - q * q;
     if (det < 1e-6 * w * qq) break;
     fit.phase += (e * qq - q * qe) / det;
-    fit.lateral_m += (w * qe - q * e) / det * kTurn / ticks;
+    fit.lateral_m += (w * qe - q * e) / det * kTwoPi / ticks;
   }
   fit.phase = wrap(fit.phase);
   fit.coherence = std::abs(phasor(samples, ticks, fit.lateral_m));
@@ -110,8 +104,8 @@ BeamAzimuth fit_beam(std::span<const Sample> samples, double ticks, bool search)
 double sideways_error(std::span<const Sample> samples, double ticks, const BeamAzimuth& fit) {
   std::vector<double> errors;
   for (const Sample& s : samples) {
-    const double model = fit.phase + ticks * fit.lateral_m * s.inverse_rho / kTurn;
-    errors.push_back(std::abs(wrap(ticks * s.turn - model)) / ticks * kTurn / s.inverse_rho);
+    const double model = fit.phase + ticks * fit.lateral_m * s.inverse_rho / kTwoPi;
+    errors.push_back(std::abs(wrap(ticks * s.turn - model)) / ticks * kTwoPi / s.inverse_rho);
   }
   const auto at = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() * 95 / 100);
   std::nth_element(errors.begin(), at, errors.end());
@@ -128,7 +122,7 @@ class LagFinder {
       auto& own = ticks_.emplace_back(beams.size());
       for (std::size_t i = 0; i < sweep.size(); ++i) {
         const BeamAzimuth& beam = beams[sweep.beam[i]];
-        const double lateral = beam.lateral_m * sweep.inverse_rho[i] / kTurn;
+        const double lateral = beam.lateral_m * sweep.inverse_rho[i] / kTwoPi;
         const double at = turn_ * (sweep.turn[i] - lateral) - beam.phase;
         own[sweep.beam[i]].push_back(wrapped(static_cast<int>(std::lround(at))));
       }

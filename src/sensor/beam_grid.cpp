@@ -13,8 +13,6 @@
 namespace sweepcast {
 namespace {
 
-constexpr double kTurn = 2.0 * kPi;
-constexpr float kInverseTurn = static_cast<float>(1.0 / kTurn);
 constexpr std::size_t kBatch = LocatedPoints::kSize;
 ExtraReason why_lost(float x, float y, float z) {
   if (!(std::isfinite(x) && std::isfinite(y) && std::isfinite(z))) return ExtraReason::not_finite;
@@ -146,7 +144,7 @@ void BeamProjector::State::undo_motion(const Motion& motion, std::size_t begin, 
   std::copy(&y[begin], &y[begin] + count, sy.begin());
   for (int round = 0; round < 4; ++round) {
     for (std::size_t i = 0; i < count; ++i) {
-      float time = arc_tangent_fast(sy[i], sx[i]) * kInverseTurn - zero;
+      float time = arc_tangent_fast(sy[i], sx[i]) * kTurnsPerRadian - zero;
       time = time >= 0.5F ? time - 1.0F : time;
       time = time < -0.5F ? time + 1.0F : time;
       const auto p = twist.undo({x[begin + i], y[begin + i], z[begin + i]}, time);
@@ -276,7 +274,7 @@ void BeamProjector::State::fill(const BeamGridOptions& options, BeamImage& image
 // Finds the cells beyond the bound. A few become extras; more get residuals.
 void BeamProjector::State::bound_errors(double max_error, BeamImage& image) {
   misfits.clear();
-  const double tick = kTurn / model.ticks_per_turn;
+  const double tick = kTwoPi / model.ticks_per_turn;
   const auto tick_size = static_cast<float>(tick);
   const auto bound = static_cast<float>(max_error * max_error);
   float farthest = 0.0F;

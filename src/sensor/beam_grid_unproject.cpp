@@ -7,11 +7,7 @@
 #include "sensor/motion.hpp"
 
 namespace sweepcast {
-namespace {
-
-constexpr double kTurn = 2.0 * kPi;
-
-}  // namespace
+namespace {}  // namespace
 
 BeamUnprojector::BeamUnprojector(const SensorModel& model)
     : model_(model), beams_(beam_geometry(model)) {}
@@ -21,7 +17,7 @@ void BeamUnprojector::unproject(const BeamImage& image, PointCloud& cloud) {
   sin_.resize(cols);
   cos_.resize(cols);
   for (std::size_t j = 0; j < cols; ++j) {
-    const SinCos at = sin_cos(kTurn * image.firing_tick[j] / model_.ticks_per_turn);
+    const SinCos at = sin_cos(kTwoPi * image.firing_tick[j] / model_.ticks_per_turn);
     sin_[j] = at.sin;
     cos_[j] = at.cos;
   }
@@ -73,7 +69,7 @@ void BeamUnprojector::decode_row(const BeamImage& image, int k) {
 void BeamUnprojector::hold(const BeamImage& image, int k) {
   const std::int32_t ticks = model_.beams[static_cast<std::size_t>(k)].interpolated;
   if (ticks == 0) return;
-  const SinCos back = sin_cos(-kTurn * ticks / model_.ticks_per_turn);
+  const SinCos back = sin_cos(-kTwoPi * ticks / model_.ticks_per_turn);
   for (std::size_t j = 0; j < x_.size(); ++j) {
     if (image.held[j] == 0) continue;
     const double x = x_[j];
@@ -86,7 +82,7 @@ void BeamUnprojector::hold(const BeamImage& image, int k) {
 void BeamUnprojector::add_residuals(const BeamImage& image, int k) {
   const auto cols = static_cast<std::size_t>(image.cols);
   const std::size_t first = static_cast<std::size_t>(k) * cols;
-  const double unit = kTurn / (static_cast<double>(model_.ticks_per_turn) * image.azimuth_divisor);
+  const double unit = kTwoPi / (static_cast<double>(model_.ticks_per_turn) * image.azimuth_divisor);
   const double step = static_cast<double>(image.height_step) / kLengthUnits;
   for (std::size_t j = 0; j < cols; ++j) {
     if (image.range[first + j] == 0) continue;

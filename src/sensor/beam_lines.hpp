@@ -9,6 +9,8 @@
 #include <span>
 #include <vector>
 
+#include "sensor/beam_geometry.hpp"
+
 namespace sweepcast {
 
 /// A beam's line in the (rho, z) plane.
@@ -17,6 +19,14 @@ struct BeamLine {
   double height = 0.0;      ///< metres
   std::size_t support = 0;  ///< points near it
 };
+
+/// The lines of a model's beams.
+[[nodiscard]] inline std::vector<BeamLine> lines_of(const std::vector<BeamGeometry>& beams) {
+  std::vector<BeamLine> lines;
+  lines.reserve(beams.size());
+  for (const BeamGeometry& beam : beams) lines.push_back({beam.tan, beam.height_m, 0});
+  return lines;
+}
 
 /// Points in the (rho, z) plane, metres; columns of one length.
 struct Profile {

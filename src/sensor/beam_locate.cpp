@@ -10,15 +10,7 @@
 namespace sweepcast {
 namespace {
 
-constexpr float kInverseTurn = static_cast<float>(1.0 / (2.0 * kPi));
 constexpr float kMaxRange = 1.0e5F;  // metres: 0.1 mm of it fit 32 bits
-
-std::vector<BeamLine> lines_of(const std::vector<BeamGeometry>& beams) {
-  std::vector<BeamLine> lines;
-  lines.reserve(beams.size());
-  for (const BeamGeometry& beam : beams) lines.push_back({beam.tan, beam.height_m, 0});
-  return lines;
-}
 
 // Nearest integer; the compiler makes one instruction of it, which std::lround is not.
 [[gnu::always_inline]] inline std::int32_t nearest(float value) {
@@ -57,7 +49,7 @@ BeamLocator::BeamLocator(const SensorModel& model)
     out.rho[i] = found != 0 ? rho : 1.0F;
     heights[i] = found != 0 ? z[i] : 0.0F;
     inverses[i] = 1.0F / out.rho[i];
-    const float turns = arc_tangent_fast(y[i], x[i]) * kInverseTurn;
+    const float turns = arc_tangent_fast(y[i], x[i]) * kTurnsPerRadian;
     out.turns[i] = found != 0 ? turns : 0.0F;
   }
   const LineTable::View table = table_.view();
@@ -82,7 +74,7 @@ BeamLocator::BeamLocator(const SensorModel& model)
     const float sine = beam.lateral * inverses[i];
     const std::int32_t is_aside = std::abs(sine) <= 0.5F ? 1 : 0;
     const float q = is_aside != 0 ? sine : 0.0F;
-    const float aside = (q + q * q * q * (1.0F / 6.0F)) * kInverseTurn;  // arc sine
+    const float aside = (q + q * q * q * (1.0F / 6.0F)) * kTurnsPerRadian;  // arc sine
     const float at = (out.turns[i] - aside) * ticks - beam.phase;
     const std::int32_t tick = nearest(at);
     std::int32_t firing = tick - beam.lag;  // at most two turns off

@@ -12,12 +12,6 @@
 namespace sweepcast {
 namespace {
 
-constexpr double kTurn = 2.0 * kPi;
-
-double wrap(double phase) {
-  return phase - std::floor(phase + 0.5);
-}
-
 // What a point costs that is off by `error` metres: 0 to 1.
 double cost(double error, double scale) {
   const double e = error * error / (scale * scale);
@@ -157,7 +151,7 @@ int MotionFitter::find_ticks() {
   if (steps.size() < 200) return 0;
   // A fast turn about z stretches steps so much that fewer ticks seem to fit them; slow ones first.
   constexpr double kStretch = 0.002;
-  constexpr int kMost = static_cast<int>(kMaxYaw / kTurn / kStretch);
+  constexpr int kMost = static_cast<int>(kMaxYaw / kTwoPi / kStretch);
   for (int n = 0; n <= kMost; ++n) {
     for (const double stretch : {1.0 + n * kStretch, 1.0 - n * kStretch}) {
       if (const int ticks = ticks_of(steps, stretch, 0.9); ticks != 0) return ticks;
@@ -188,7 +182,7 @@ void MotionFitter::find_yaw(int ticks_per_turn, const SensorModel* model, double
   order.resize(std::min(order.size(), kBeams));
   const double turned = motion[5];  // already undone
   const auto coherence = [&](double yaw) {
-    const double stretch = 1.0 + (yaw - turned) / kTurn;  // times are azimuths, in turns
+    const double stretch = 1.0 + (yaw - turned) / kTwoPi;  // times are azimuths, in turns
     double total = 0.0;
     for (const std::size_t k : order) {
       const std::size_t stride = samples[k].size() / kPoints + 1;
@@ -202,7 +196,7 @@ void MotionFitter::find_yaw(int ticks_per_turn, const SensorModel* model, double
         double im = 0.0;
         for (std::size_t i = 0; i < samples[k].size(); i += stride) {
           const Sample& s = samples[k][i];
-          const double turn = s.time * stretch - lateral * s.inverse_rho / kTurn;
+          const double turn = s.time * stretch - lateral * s.inverse_rho / kTwoPi;
           const SinCos at = unit_phasor(wrap(turn * ticks_per_turn));
           re += at.cos;
           im += at.sin;

@@ -12,7 +12,6 @@
 namespace sweepcast {
 namespace {
 
-constexpr double kTurn = 2.0 * kPi;
 constexpr double kFixed = 1e12;  // weight of a prior that holds a number where it is
 
 // What one more unit of each number does to a residual that moves with `slope` in the sensor's
@@ -60,19 +59,8 @@ double robust(double residual, double scale) {
   return 1.0 / (f * f * scale * scale);
 }
 
-double wrap(double phase) {
-  return phase - std::floor(phase + 0.5);
-}
-
 void add_to(MotionVector& motion, const MotionVector& step) {
   for (std::size_t i = 0; i < motion.size(); ++i) motion[i] += step[i];
-}
-
-std::vector<BeamLine> lines_of(const std::vector<BeamGeometry>& beams) {
-  std::vector<BeamLine> lines;
-  lines.reserve(beams.size());
-  for (const BeamGeometry& beam : beams) lines.push_back({beam.tan, beam.height_m, 0});
-  return lines;
 }
 
 // Both parts of a motion, ready to be undone.
@@ -130,7 +118,7 @@ void undo_motion(const CloudView& cloud, const MotionVector& motion, double zero
       const auto mounted = undoing.mount.undo(q, 1.0);
       p = mounted;
       for (int round = 0; round < 4; ++round) {
-        double s = wrap(arc_tangent(p[1], p[0]) / kTurn - zero);
+        double s = wrap(arc_tangent(p[1], p[0]) / kTwoPi - zero);
         if (model != nullptr) {
           const double rho = std::sqrt(p[0] * p[0] + p[1] * p[1]);
           s += beams[table.nearest(static_cast<float>(rho), static_cast<float>(p[2]))].time_turns;
@@ -162,7 +150,6 @@ MotionFitter::MotionFitter(const CloudView& cloud, std::size_t stride, double ze
 // In floats and in batches, so that compilers vectorise it: this takes most of the time.
 void MotionFitter::undo(const MotionVector& motion) {
   constexpr std::size_t kBatch = 256;
-  constexpr auto kInverseTurn = static_cast<float>(1.0 / kTurn);
   const Motion quantised = quantised_motion(motion, 0);
   const Twist<float> twist(quantised);
   const Twist<float> mount(quantised.mount);
@@ -184,7 +171,7 @@ void MotionFitter::undo(const MotionVector& motion) {
     }
     for (int round = 0; round < 3; ++round) {
       for (std::size_t i = 0; i < count; ++i) {
-        float s = arc_tangent_fast(own[1][i], own[0][i]) * kInverseTurn - zero;
+        float s = arc_tangent_fast(own[1][i], own[0][i]) * kTurnsPerRadian - zero;
         s = s < -0.5F ? s + 1.0F : s;
         s = s >= 0.5F ? s - 1.0F : s;
         s += ahead[i];
@@ -220,7 +207,7 @@ double MotionFitter::height_error(std::size_t i) const {
 // Sideways distance to the nearest tick, metres.
 double MotionFitter::aside(std::size_t i, const BeamGeometry& beam, int ticks_per_turn) const {
   const double turn = time_[i] - beam.time_turns + zero_ - lateral_turns(beam, rho_[i]);
-  return wrap(turn * ticks_per_turn - beam.phase) / ticks_per_turn * kTurn * rho_[i];
+  return wrap(turn * ticks_per_turn - beam.phase) / ticks_per_turn * kTwoPi * rho_[i];
 }
 
 // One Gauss-Newton step on the heights of the points at most `reach` turns from time 0. Lines that

@@ -22,14 +22,14 @@ using Point = std::array<float, 3>;
 using Nudge = std::array<double, 9>;
 
 // Points in the sensor's frame, as far as known, with their times.
-struct Sample {
+struct TimedPoint {
   Point p;
   float time;
 };
 
 class Contrast {
  public:
-  explicit Contrast(std::vector<Sample> samples) : samples_(std::move(samples)) {}
+  explicit Contrast(std::vector<TimedPoint> samples) : samples_(std::move(samples)) {}
 
   // How sharply slopes gather in bins: the votes' squares over their neighbourhood's mean, a vote.
   // Comparing with the neighbourhood leaves out that some slopes are seen more than others.
@@ -73,17 +73,17 @@ class Contrast {
     return total;
   }
 
-  std::vector<Sample> samples_;
+  std::vector<TimedPoint> samples_;
   std::vector<float> votes_;
   std::vector<double> sums_;
 };
 
 // Through a mount; times by azimuth.
-std::vector<Sample> sampled(std::span<const Point> points, std::size_t count,
-                            const MotionVector& mount, double zero) {
+std::vector<TimedPoint> sampled(std::span<const Point> points, std::size_t count,
+                                const MotionVector& mount, double zero) {
   constexpr double kNear = 4.0;  // metres: nearer ones see the sensor's own vehicle
   const Twist<double> twist(quantised_motion(mount, 0).mount);
-  std::vector<Sample> some;
+  std::vector<TimedPoint> some;
   const std::size_t step = points.size() / count + 1;
   for (std::size_t i = 0; i < points.size(); i += step) {
     const auto p = twist.undo({points[i][0], points[i][1], points[i][2]}, 1.0);

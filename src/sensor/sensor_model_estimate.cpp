@@ -15,7 +15,6 @@
 namespace sweepcast {
 namespace {
 
-constexpr double kTurn = 2.0 * kPi;
 constexpr std::size_t kMinPoints = 500;
 constexpr double kClearly = 0.95;    // fewer columns than this share are clearly fewer
 constexpr double kRounding = 0.003;  // metres: scale of height residuals of a crisp beam
@@ -57,7 +56,7 @@ void add_sweep(const CloudView& cloud, bool use_ring, Samples& samples) {
     const double z = cloud.z.at(i);
     const double rho = std::sqrt(x * x + y * y);
     if (!(rho > 0.05 && rho < 1e4 && std::abs(z) < 1e4)) continue;
-    const double turn = arc_tangent(y, x) / kTurn;
+    const double turn = arc_tangent(y, x) / kTwoPi;
     sweep.turn.push_back(static_cast<float>(turn < 0.0 ? turn + 1.0 : turn));
     sweep.inverse_rho.push_back(static_cast<float>(1.0 / rho));
     samples.rho.push_back(static_cast<float>(rho));
@@ -158,7 +157,7 @@ Miss miss_of(const BeamGeometry& beam, double rho, double z, double turn, int ti
   const double height = z - (rho * beam.tan + beam.height_m);
   const double at = (turn - lateral_turns(beam, rho)) * ticks - beam.phase;
   const double off = at - std::floor(at + 0.5);
-  const double aside = off / ticks * kTurn * rho;
+  const double aside = off / ticks * kTwoPi * rho;
   const double above = height * beam.inverse_slant;
   return {height, off, std::sqrt(aside * aside + above * above)};
 }
@@ -230,7 +229,7 @@ Jitter find_jitter(const BeamSamples& sweep, const SensorModel& model) {
   for (std::size_t i = 0; i < sweep.size(); ++i) {
     const std::size_t k = sweep.beam[i];
     const double q = beams[k].lateral_m * sweep.inverse_rho[i];
-    const double at = (sweep.turn[i] - q / kTurn) * model.ticks_per_turn - beams[k].phase;
+    const double at = (sweep.turn[i] - q / kTwoPi) * model.ticks_per_turn - beams[k].phase;
     const int tick =
         (static_cast<int>(std::floor(at + 0.5)) - model.beams[k].lag) % model.ticks_per_turn;
     places.push_back(

@@ -17,7 +17,7 @@ namespace {
 constexpr std::int64_t kMostValues = 65'536;
 constexpr std::size_t kLargestPalette = 2048;
 constexpr std::int64_t kLargestOffset = std::int64_t{1} << 50;
-constexpr double kLargestStep = 1e12;
+constexpr double kLargestIntensityStep = 1e12;
 constexpr int kRounds = 3;  // of medians by turns over rows and columns
 
 // The float's bits as an integer that rises with the float.
@@ -138,7 +138,7 @@ bool code_format(Coder& coder, AttributeFormat& f) {
     code(colours);
     unit.step = std::bit_cast<double>(step);
     if (unit.kind > IntensityUnit::Kind::bits || unit.width < 1 || unit.width > 16 ||
-        unit.divisor < 1 || !(unit.step > 0 && unit.step <= kLargestStep) ||
+        unit.divisor < 1 || !(unit.step > 0 && unit.step <= kLargestIntensityStep) ||
         unit.offset < -kLargestOffset || unit.offset > kLargestOffset ||
         colours > kLargestPalette || (unit.kind == IntensityUnit::Kind::palette && colours == 0)) {
       return false;

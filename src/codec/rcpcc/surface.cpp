@@ -13,7 +13,6 @@ namespace {
 constexpr std::size_t kRefitCells = 1024;
 // A surface with fewer cells costs more bytes than its cells would in the unfit image.
 constexpr std::size_t kFewestCells = 3;
-constexpr std::int32_t kLargestRange = 2'000'000;  // millimetres; any sensor sees less
 
 // The three functions of a cell in which inverse range is linear:
 //     r0^2 / r = r0 e + gu u + gv v.

@@ -11,6 +11,7 @@
 namespace sweepcast::rcpcc {
 
 inline constexpr std::uint8_t kEscape = 255;
+inline constexpr std::int32_t kLargestRange = 2'000'000;  ///< millimetres; any sensor sees less
 
 /// 0 to 254 as one byte; more as 255 and a varint of the excess.
 inline void put_count(ByteWriter& out, std::uint32_t value) {

@@ -9,8 +9,6 @@
 namespace sweepcast::rcpcc {
 namespace {
 
-constexpr std::int32_t kLargestRange = 2'000'000;  // millimetres
-
 std::int32_t quantise(float value, float step, Rounding rounding) {
   const float steps = value / step;
   if (rounding == Rounding::truncate) return static_cast<std::int32_t>(steps);
