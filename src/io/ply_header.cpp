@@ -9,13 +9,13 @@
 namespace sweepcast {
 namespace {
 
-struct TypeName {
+struct PlyTypeName {
   std::string_view name;
   NumberType type;
 };
 
 /// The names of the first writers of PLY, and those that tell the size.
-constexpr std::array<TypeName, 18> kTypeNames{{
+constexpr std::array<PlyTypeName, 18> kPlyTypeNames{{
     {"char", NumberType::i8},
     {"uchar", NumberType::u8},
     {"short", NumberType::i16},
@@ -37,7 +37,7 @@ constexpr std::array<TypeName, 18> kTypeNames{{
 }};
 
 std::optional<NumberType> type_of(std::string_view name) {
-  for (const TypeName& type : kTypeNames) {
+  for (const PlyTypeName& type : kPlyTypeNames) {
     if (type.name == name) return type.type;
   }
   return std::nullopt;
@@ -116,7 +116,7 @@ Status parse_ply_header(std::span<const std::byte> bytes, PlyHeader& header) {
 }
 
 std::string_view ply_name_of(NumberType type) {
-  for (const TypeName& name : kTypeNames) {
+  for (const PlyTypeName& name : kPlyTypeNames) {
     if (name.type == type) return name.name;
   }
   return {};

@@ -12,7 +12,7 @@ namespace sweepcast {
 namespace {
 
 constexpr std::size_t kFileCap = std::size_t{256} << 20;
-constexpr std::int64_t kLongestUs = 86'400'000'000;
+constexpr std::int64_t kLongestTraceUs = 86'400'000'000;
 constexpr double kMostOpportunities = 1e7;
 constexpr double kMostKilobytes = 1e6;  ///< a second
 
@@ -50,7 +50,7 @@ Result<Entry> parse_entry(std::string_view line, std::size_t number) {
                    "no schedule; a line has seconds and kilobytes a second, the last one seconds "
                    "and the word end");
   }
-  if (*seconds * 1e6 > static_cast<double>(kLongestUs) || (rate && *rate > kMostKilobytes)) {
+  if (*seconds * 1e6 > static_cast<double>(kLongestTraceUs) || (rate && *rate > kMostKilobytes)) {
     return fail_at(ErrorCode::limit, number, "over a day, or over 1 GB/s; make it smaller");
   }
   return Entry{std::llround(*seconds * 1e6), rate};
@@ -69,7 +69,7 @@ Result<Trace> parse_mahimahi(std::string_view text, std::string name) {
       return fail_at(ErrorCode::corrupt, lines.line(),
                      "no trace; a line has one whole number of milliseconds");
     }
-    if (*ms > kLongestUs / 1000) {
+    if (*ms > kLongestTraceUs / 1000) {
       return fail_at(ErrorCode::limit, lines.line(), "later than a day; cut the trace");
     }
     if (*ms * 1000 < trace.period_us) {

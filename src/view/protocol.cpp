@@ -18,7 +18,7 @@ constexpr std::uint8_t kHasOriginal = 1;
 constexpr std::size_t kMostName = 0xFFFF;
 
 /// Bytes that are not UTF-8, as a file's name may have, become U+FFFD.
-std::string text_of(const Json& json) {
+std::string text_in(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -32,7 +32,7 @@ tl::unexpected<Error> refuse(const std::string& what) {
 }
 
 /// A whole number from 0 to 2^32 - 1.
-Result<std::uint32_t> number_of(const Json& message, const char* key) {
+Result<std::uint32_t> number_in(const Json& message, const char* key) {
   const auto found = message.find(key);
   if (found != message.end() && found->is_number_unsigned()) {
     const auto value = found->get<std::uint64_t>();
@@ -65,7 +65,7 @@ std::string write_hello(const Show& show) {
   for (const Stream& stream : show.streams) {
     streams.push_back({{"id", stream.id}, {"robot", stream.robot}, {"sensor", stream.sensor}});
   }
-  return text_of({{"kind", "hello"},
+  return text_in({{"kind", "hello"},
                   {"version", 1},
                   {"source", show.is_live ? "live" : "file"},
                   {"title", show.title},
@@ -98,12 +98,12 @@ std::string write_status(double time_s, std::span<const RobotFigures> robots) {
                     {"can_override", sender.can_override},
                     {"override", or_null(sender.override_level)}});
   }
-  return text_of({{"kind", "status"}, {"time_s", time_s}, {"robots", std::move(list)}});
+  return text_in({{"kind", "status"}, {"time_s", time_s}, {"robots", std::move(list)}});
 }
 
 std::string write_state(Player& player, Clock::time_point now) {
   const std::uint32_t index = player.index(now);
-  return text_of({{"kind", "state"},
+  return text_in({{"kind", "state"},
                   {"index", index},
                   {"playing", player.playing()},
                   {"speed", player.speed()},
@@ -112,7 +112,7 @@ std::string write_state(Player& player, Clock::time_point now) {
 
 std::string write_notice(NoticeLevel level, std::string_view text) {
   constexpr const char* kNames[] = {"info", "warning", "error"};
-  return text_of({{"kind", "notice"}, {"level", kNames[static_cast<int>(level)]}, {"text", text}});
+  return text_in({{"kind", "notice"}, {"level", kNames[static_cast<int>(level)]}, {"text", text}});
 }
 
 Bytes write_sweep_head(const Sweep& sweep, Clock::time_point now) {
@@ -150,7 +150,7 @@ Result<Command> read_command(std::string_view text) {
   if (kind == "override") return read_override(message);
   if (kind == "more" || kind == "seek") {
     const bool is_more = kind == "more";
-    const auto number = number_of(message, is_more ? "count" : "index");
+    const auto number = number_in(message, is_more ? "count" : "index");
     if (!number) return tl::unexpected(number.error());
     return Command{is_more ? Kind::more : Kind::seek, *number};
   }

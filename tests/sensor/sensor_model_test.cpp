@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "lab/real_sweeps.hpp"
+#include "rounds.hpp"
 #include "sensor/spinning_lidar.hpp"
 
 namespace sweepcast {
@@ -88,7 +89,7 @@ TEST(SensorModel, RingsGiveTheSameAsNone) {
 TEST(SensorModel, RefusesWhatDoesNotSpin) {
   std::mt19937 random(4);
   PointCloud box;
-  for (int i = 0; i < 20'000; ++i) {
+  for (int i = 0; i < test::rounds(20'000); ++i) {
     test::push(box, {test::uniform(random, -20, 20), test::uniform(random, -20, 20),
                      test::uniform(random, -20, 20)});
   }

@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "core/trig.hpp"
 #include "lab/detect/box_overlap.hpp"
 
 namespace sweepcast::lab {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kCell = 2.0 * static_cast<double>(PillarGrid::kSize);
+constexpr double kAnchorCell = 2.0 * static_cast<double>(PillarGrid::kSize);
 constexpr double kPositive = 0.55;
 constexpr double kNegative = 0.4;
 
@@ -47,7 +46,7 @@ bool points_backward(const Box& box, const Box& at) {
 
 int cell_index(double at) {
   const double reach = static_cast<double>(PillarGrid::kReach);
-  return static_cast<int>(std::floor((at + reach) / kCell));
+  return static_cast<int>(std::floor((at + reach) / kAnchorCell));
 }
 
 // Calls `visit(index)` for the anchors within 3 m of a box.
@@ -97,7 +96,7 @@ Box anchor(int index) {
   const double reach = static_cast<double>(PillarGrid::kReach);
   Box box;
   const int row = cell / kOutputSide, column = cell % kOutputSide;
-  box.centre = {(column + 0.5) * kCell - reach, (row + 0.5) * kCell - reach, kMiddle};
+  box.centre = {(column + 0.5) * kAnchorCell - reach, (row + 0.5) * kAnchorCell - reach, kMiddle};
   box.length = kLength;
   box.width = kWidth;
   box.height = kHeight;
@@ -172,9 +171,8 @@ std::vector<Box> suppress_overlaps(std::vector<Box> boxes, double most) {
   std::vector<Box> kept;
   std::vector<Votes> votes;
   for (const Box& box : boxes) {
-    const auto better = std::find_if(kept.begin(), kept.end(), [&](const Box& other) {
-      return bev_iou(other, box) > most;
-    });
+    const auto better = std::find_if(kept.begin(), kept.end(),
+                                     [&](const Box& other) { return bev_iou(other, box) > most; });
     const auto k = static_cast<std::size_t>(better - kept.begin());
     if (better == kept.end()) {
       kept.push_back(box);

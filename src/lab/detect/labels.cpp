@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostBytes = std::size_t{1} << 26U;
+constexpr std::size_t kMostLabelBytes = std::size_t{1} << 26U;
 
 /// A rectangle of an image, pixels.
 struct Region {
@@ -107,7 +107,8 @@ std::vector<std::string_view> cells_of(std::string_view line) {
 
 Result<std::string> read_text(const fs::path& file) {
   std::vector<std::byte> bytes;
-  if (Status read = read_file(file, kMostBytes, bytes); !read) return tl::unexpected(read.error());
+  if (Status read = read_file(file, kMostLabelBytes, bytes); !read)
+    return tl::unexpected(read.error());
   return std::string(as_text(bytes));
 }
 

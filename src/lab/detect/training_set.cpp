@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <system_error>
 
+#include "core/trig.hpp"
 #include "sweepcast/cloud_file.hpp"
 
 namespace sweepcast::lab {
@@ -14,7 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kPi = std::numbers::pi;
 constexpr int kMinPoints = 5;  ///< of a box that the network is asked for
 
 std::vector<fs::path> clouds_of(const fs::path& folder) {

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kEvery = 2;
+constexpr std::size_t kDetectionEvery = 2;
 
 /// Where true boxes lie in a drive: as `simulate` writes them, and as KITTI has them.
 constexpr std::array<const char*, 2> kFolders{"boxes", "label_2"};
@@ -115,7 +115,7 @@ Result<std::unique_ptr<const Task>> make_detection_task(const DriveFiles& drive,
                     "boxes/, as `sweepcast simulate` does, or into label_2/, as KITTI does");
   }
   DetectionSetup setup{std::vector<Labels>(drive.sweeps.size()), options.weights};
-  const std::size_t every = options.full ? 1 : kEvery;
+  const std::size_t every = options.full ? 1 : kDetectionEvery;
   ContentHash hash;
   for (std::size_t i = 0; i < setup.truth.size(); i += every) {
     auto labels = read_labels(folder, drive.sweeps[i].stem().string());

@@ -12,7 +12,7 @@
 namespace sweepcast::lab {
 namespace {
 
-constexpr std::size_t kEvery = 5;
+constexpr std::size_t kDistortionEvery = 5;
 
 /// What every codec is compared with, prepared once where there are few sweeps: a reference of
 /// 120,000 points takes about 15 MB.
@@ -82,7 +82,7 @@ class DistortionTask : public Task {
 
 Result<std::unique_ptr<const Task>> make_distortion_task(const DriveFiles& drive,
                                                          const TaskOptions& options) {
-  return std::make_unique<DistortionTask>(drive.sweeps.size(), options.full ? 1 : kEvery);
+  return std::make_unique<DistortionTask>(drive.sweeps.size(), options.full ? 1 : kDistortionEvery);
 }
 
 }  // namespace sweepcast::lab

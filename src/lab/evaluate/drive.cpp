@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kLargestFile = std::size_t{1} << 30;
+constexpr std::size_t kLargestInput = std::size_t{1} << 30;
 
 bool is_there(const fs::path& file) {
   std::error_code error;
@@ -45,7 +45,7 @@ Status find_poses(DriveFiles& drive) {
 
 Result<std::string> hash_file(const fs::path& file) {
   std::vector<std::byte> bytes;
-  if (Status read = read_file(file, kLargestFile, bytes); !read) {
+  if (Status read = read_file(file, kLargestInput, bytes); !read) {
     return tl::unexpected(std::move(read.error()));
   }
   return ContentHash().add(bytes).hex();
@@ -64,7 +64,7 @@ Result<DriveFiles> open_drive(fs::path folder, std::vector<fs::path> sweeps) {
   ContentHash hash;
   std::vector<std::byte> bytes;
   for (const fs::path& sweep : drive.sweeps) {
-    if (Status read = read_file(sweep, kLargestFile, bytes); !read) {
+    if (Status read = read_file(sweep, kLargestInput, bytes); !read) {
       return tl::unexpected(std::move(read.error()));
     }
     hash.add(bytes);

@@ -12,6 +12,7 @@
 #include "codec/beam/codec.hpp"
 #include "codec/beam/sensor.hpp"
 #include "lab/real_sweeps.hpp"
+#include "rounds.hpp"
 #include "sweepcast/cloud_file.hpp"
 
 namespace sweepcast {
@@ -96,7 +97,7 @@ TEST(BeamAttributes, PointsOfNoSensorKeepTheirs) {
 }
 
 TEST(BeamAttributes, CrowdedPointsKeepTheirs) {
-  PointCloud cloud = tagged_sweep(32, 900, 4);
+  PointCloud cloud = tagged_sweep(32, test::rounds(900), 4);
   for (const double max_error : {0.2, 0.5, 1.0}) {
     const PointCloud decoded = test::decode(test::encode(test::beam_options(max_error), cloud));
     EXPECT_EQ(decoded.size(), cloud.size());
@@ -123,7 +124,7 @@ TEST(BeamAttributes, DuplicatesAndUncodablePoints) {
 }
 
 TEST(BeamAttributes, AnyPrefixOfLayersHasItsOwn) {
-  const PointCloud cloud = tagged_sweep(32, 900, 4);
+  const PointCloud cloud = tagged_sweep(32, test::rounds(900), 4);
   const Bytes frame = test::encode(test::beam_options(0.05), cloud);
   std::size_t fewer = 0;
   for (int layers = 1; layers <= 5; ++layers) {

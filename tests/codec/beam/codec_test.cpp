@@ -5,6 +5,7 @@
 
 #include "codec/beam/codec.hpp"
 #include "codec/beam/sensor.hpp"
+#include "rounds.hpp"
 
 namespace sweepcast {
 namespace {
@@ -109,7 +110,7 @@ TEST(BeamCodec, CroppedPointsAreCounted) {
 TEST(BeamCodec, ACloudOfNoSensorIsKeptWithinTheBound) {
   std::mt19937 random(4);
   PointCloud cloud;
-  for (int i = 0; i < 20'000; ++i) {
+  for (int i = 0; i < test::rounds(20'000); ++i) {
     test::add_point(cloud, uniform(random, -60, 60), uniform(random, -60, 60),
                     uniform(random, -5, 20));
   }

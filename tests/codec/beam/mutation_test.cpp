@@ -14,6 +14,7 @@
 #include "codec/frame_layout.hpp"
 #include "core/crc32.hpp"
 #include "repair_frame.hpp"
+#include "rounds.hpp"
 
 namespace sweepcast {
 namespace {
@@ -75,7 +76,7 @@ TEST(BeamMutation, ChecksumsFindTheDamage) {
   std::mt19937 random(1);
   const std::vector<Bytes> frames = sound_frames();
   PointCloud cloud;
-  for (int i = 0; i < 3000; ++i) {
+  for (int i = 0; i < test::rounds(3000); ++i) {
     const Bytes& sound = frames[random_bits(random) % frames.size()];
     Bytes damaged = sound;
     damaged[random_bits(random) % damaged.size()] ^= static_cast<std::byte>(1U << (i % 8));

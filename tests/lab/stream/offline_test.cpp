@@ -8,6 +8,7 @@
 #include "core/random.hpp"
 #include "lab/stream/frame_sets.hpp"
 #include "lab/stream/summary.hpp"
+#include "rounds.hpp"
 
 namespace sweepcast::lab {
 namespace {
@@ -73,7 +74,7 @@ TEST(Offline, IsTheBestOfAllPlansOnShortTraces) {
 
 TEST(Offline, IsNeverBelowAnyStrategy) {
   std::mt19937 random(6);
-  for (int round = 0; round < 8; ++round) {
+  for (int round = 0; round < test::rounds(8); ++round) {
     const Trace trace = round == 0 ? paper_trace() : random_trace(random);
     const FrameSet frames = ladder_of({21'000, 17'000, 15'000, 7'400, 6'600, 2'250});
     SessionOptions options;
