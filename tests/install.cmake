@@ -9,7 +9,7 @@ function(install_test name)
   add_test(NAME install_${name} COMMAND ${CMAKE_COMMAND}
     -D SOURCE=${PROJECT_SOURCE_DIR} -D BUILD=${PROJECT_BINARY_DIR}
     -D WORK=${CMAKE_CURRENT_BINARY_DIR}/install -D CXX=${CMAKE_CXX_COMPILER}
-    -D GENERATOR=${CMAKE_GENERATOR} -D LIBDIR=${CMAKE_INSTALL_LIBDIR}
+    -D GENERATOR=${CMAKE_GENERATOR} -D LINK=${SWEEPCAST_WITH_LINK} -D LIBDIR=${CMAKE_INSTALL_LIBDIR}
     -P ${CMAKE_CURRENT_SOURCE_DIR}/install/${name}.cmake)
   set_tests_properties(install_${name} PROPERTIES TIMEOUT 600)
 endfunction()
@@ -26,3 +26,5 @@ foreach(name IN LISTS consumers)
 endforeach()
 install_test(add_subdirectory)
 install_test(shared)
+set_tests_properties(install_add_subdirectory PROPERTIES FIXTURES_SETUP subdirectory)
+set_tests_properties(install_shared PROPERTIES FIXTURES_REQUIRED subdirectory)

@@ -11,6 +11,6 @@ endfunction()
 function(build source folder)
   file(REMOVE_RECURSE ${folder})
   run(${CMAKE_COMMAND} -S ${source} -B ${folder} -G ${GENERATOR}
-      -D CMAKE_CXX_COMPILER=${CXX} -D CMAKE_BUILD_TYPE=Debug ${ARGN})
+      -D CMAKE_CXX_COMPILER=${CXX} -D CMAKE_BUILD_TYPE=Debug -D CMAKE_CXX_FLAGS_DEBUG=-O0 ${ARGN})
   run(${CMAKE_COMMAND} --build ${folder})
 endfunction()

@@ -1,10 +1,13 @@
-# The libraries as shared objects, installed, and used both ways.
+# The shared libraries that add_subdirectory.cmake began, installed, and used both ways.
 include(${CMAKE_CURRENT_LIST_DIR}/common.cmake)
 set(prefix ${WORK}/shared_prefix)
 file(REMOVE_RECURSE ${prefix})
-build(${SOURCE} ${WORK}/shared -D BUILD_SHARED_LIBS=ON -D SWEEPCAST_APPS=OFF
-      -D SWEEPCAST_TESTS=OFF -D SWEEPCAST_BENCH=OFF -D CMAKE_INSTALL_LIBDIR=lib)
-run(${CMAKE_COMMAND} --install ${WORK}/shared --prefix ${prefix})
+set(libraries sweepcast sweepcast_io)
+if(LINK)
+  list(APPEND libraries sweepcast_link)
+endif()
+run(${CMAKE_COMMAND} --build ${WORK}/add_subdirectory --target ${libraries})
+run(${CMAKE_COMMAND} --install ${WORK}/add_subdirectory/sweepcast --prefix ${prefix})
 file(GLOB libraries RELATIVE ${prefix}/lib ${prefix}/lib/libsweepcast.so.*.*.*)
 list(LENGTH libraries count)
 if(NOT count EQUAL 1)
