@@ -17,7 +17,7 @@ function(cross_test name)
     -D LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER} ${ARGN}
     -P ${CMAKE_CURRENT_SOURCE_DIR}/cross/agreement.cmake)
   set_tests_properties(cross_${name} PROPERTIES
-    TIMEOUT 1200 SKIP_REGULAR_EXPRESSION "^skipped: ")
+    TIMEOUT 1200 COST 100 SKIP_REGULAR_EXPRESSION "^skipped: ")
 endfunction()
 
 cross_test(here -D PROGRAM=$<TARGET_FILE:agreement>)
