@@ -51,7 +51,7 @@ Result<Command> read_override(const Json& message) {
   const auto level = message.find("level");
   if (level == message.end()) return refuse("\"override\" has no level");
   if (level->is_null()) return command;
-  const auto number = number_of(message, "level");
+  const auto number = number_in(message, "level");
   if (!number) return tl::unexpected(number.error());
   if (*number >= kLevels) return refuse("\"override\" has a level beyond 5");
   command.level = *number;
