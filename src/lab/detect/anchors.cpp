@@ -17,7 +17,7 @@ constexpr double kNegative = 0.4;
 constexpr double kVanHeight = 1.76;  // between the highest cars and the lowest vans
 
 // An anchor's size, between a car's and a van's, and its middle for a sensor 1.73 m above the road.
-constexpr double kLength = 4.4, kWidth = 1.8, kHeight = 1.6, kMiddle = -0.93;
+constexpr double kCarLength = 4.4, kCarWidth = 1.8, kCarHeight = 1.6, kMiddle = -0.93;
 
 // An angle's representative in [-pi / 2, pi / 2): a box's outline has no front.
 double half_turn(double angle) {
@@ -97,9 +97,9 @@ Box anchor(int index) {
   Box box;
   const int row = cell / kOutputSide, column = cell % kOutputSide;
   box.centre = {(column + 0.5) * kAnchorCell - reach, (row + 0.5) * kAnchorCell - reach, kMiddle};
-  box.length = kLength;
-  box.width = kWidth;
-  box.height = kHeight;
+  box.length = kCarLength;
+  box.width = kCarWidth;
+  box.height = kCarHeight;
   box.yaw = which == 0 ? 0.0 : 0.5 * kPi;
   return box;
 }
