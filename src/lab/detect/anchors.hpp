@@ -40,8 +40,8 @@ struct AnchorTargets {
 [[nodiscard]] Box decode_box(int index, std::span<const float, kResiduals> residuals, bool backward,
                              double score);
 
-/// Keeps the best scored of boxes that overlap by more than `most` (bird's-eye IoU), best first; each
-/// becomes the mean, weighted by scores, of itself and those that overlap it by half or more.
+/// Keeps the best scored of boxes that overlap by more than `most` (bird's-eye IoU), best first;
+/// each becomes the mean, weighted by scores, of itself and those that overlap it by half or more.
 [[nodiscard]] std::vector<Box> suppress_overlaps(std::vector<Box> boxes, double most);
 
 }  // namespace sweepcast::lab
