@@ -123,7 +123,7 @@ function begin(message: Hello): void {
   // After the server was started again a file goes on where it was; paused first, or it would go on from there.
   if (cameBack && message.source === 'file') {
     send({ kind: position.playing ? 'play' : 'pause' });
-    send({ kind: 'seek', index: position.index });
+    transport.seek(position.index);
   }
 }
 
