@@ -130,6 +130,10 @@ void print(const DetectCommand& options, const Detections& detections) {
 Status detect(const DetectCommand& options) {
   const auto sweeps = collect_clouds(options.inputs);
   if (!sweeps) return tl::unexpected(sweeps.error());
+  if (!options.truth.empty() && !std::filesystem::is_directory(options.truth)) {
+    return fail(ErrorCode::not_found,
+                options.truth + ": is no folder; give that of the drive's true boxes");
+  }
   const auto detector = make_detector(options.detector, options.weights);
   if (!detector) return tl::unexpected(detector.error());
   std::error_code error;

@@ -143,8 +143,15 @@ Status check_failures(const lab::Evaluation& evaluation) {
 Status evaluate(const EvaluateCommand& options) {
   const auto drive = open_drive(options);
   if (!drive) return tl::unexpected(drive.error());
+  std::error_code error;
+  fs::create_directories(options.output, error);
+  if (error) return io_failure(options.output, "cannot be made a folder", error.value());
   lab::TaskOptions task_options = options.task_options;
-  if (task_options.weights.empty()) task_options.weights = shipped_weights();
+  if (task_options.weights.empty()) {
+    task_options.weights = shipped_weights();
+  } else if (const auto detector = lab::make_pillar_detector(task_options.weights); !detector) {
+    return tl::unexpected(detector.error());  // what was named is not to be left out in silence
+  }
   auto tasks = lab::make_tasks(options.tasks, *drive, task_options);
   if (!tasks) return tl::unexpected(std::move(tasks.error()));
   auto settings = lab::make_settings(options.settings, *drive);

@@ -1,7 +1,6 @@
 // `sweepcast mesh`: one surface of many sweeps, and how far it lies from another.
 #include <fmt/core.h>
 
-#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -9,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "common/cpu_time.hpp"
 #include "common/inputs.hpp"
 #include "common/progress.hpp"
 #include "common/validators.hpp"
@@ -68,7 +68,7 @@ Result<Fusion> fuse(const Files& sweeps, const Files& timed,
   auto volume = lab::TsdfVolume::create(options.volume);
   if (!volume) return tl::unexpected(volume.error());
   Fusion fusion;
-  const auto begin = std::chrono::steady_clock::now();
+  const double begin = cpu_time_ms();
   Progress progress("meshing", sweeps.size());
   PointCloud cloud;
   std::vector<float> when;
@@ -85,8 +85,7 @@ Result<Fusion> fuse(const Files& sweeps, const Files& timed,
     progress.step();
   }
   fusion.mesh = volume->surface(options.min_weight);
-  const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - begin;
-  fusion.ms_per_sweep = spent.count() / static_cast<double>(sweeps.size());
+  fusion.ms_per_sweep = (cpu_time_ms() - begin) / static_cast<double>(sweeps.size());
   fusion.memory_bytes = volume->memory_bytes();
   return fusion;
 }

@@ -3,7 +3,9 @@
 
 #include <fmt/core.h>
 
-#include <chrono>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -11,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "common/cpu_time.hpp"
 #include "common/inputs.hpp"
 #include "common/progress.hpp"
 #include "common/validators.hpp"
@@ -39,14 +42,25 @@ Result<std::vector<lab::RigidTransform>> run_odometry(
   Progress progress("odometry", sweeps.size());
   PointCloud cloud;
   std::vector<float> when;
+  std::size_t empty = 0;  // sweeps without a finite point
   for (const auto& sweep : sweeps) {
     if (Status read = read_cloud(sweep, cloud); !read) return tl::unexpected(read.error());
+    empty += std::none_of(cloud.x.begin(), cloud.x.end(), [](float x) { return std::isfinite(x); });
     when.clear();
     if (options.deskew == "auto") {
       if (const auto clock = lab::SweepClock::learn(cloud)) clock->tell(cloud, when);
     }
     odometry.add(cloud, when);
     progress.step();
+  }
+  if (empty == sweeps.size()) {
+    return fail(
+        ErrorCode::invalid_argument,
+        sweeps.front().string() + ": no sweep from here on has a finite point; give others");
+  }
+  if (empty > 0) {
+    print_note(
+        fmt::format("{} sweeps have no finite point; motion goes on there as before", empty));
   }
   return odometry.poses();
 }
@@ -65,7 +79,7 @@ nlohmann::ordered_json report_of(const lab::TrajectoryError& error) {
 
 void print_text(const OdometryCommand& options, std::size_t sweeps, double ms_each,
                 const std::optional<lab::TrajectoryError>& error) {
-  fmt::print("{}: {} poses, {:.1f} ms a sweep\n", options.output, sweeps, ms_each);
+  fmt::print("{}: {} poses, {:.1f} ms of CPU time a sweep\n", options.output, sweeps, ms_each);
   if (!error) return;
   if (error->stretches > 0) {
     fmt::print(
@@ -95,10 +109,10 @@ Status odometry(const OdometryCommand& options) {
     }
     truth.resize(sweeps->size());
   }
-  const auto begin = std::chrono::steady_clock::now();
+  const double begin = cpu_time_ms();
   const auto poses = run_odometry(*sweeps, options);
   if (!poses) return tl::unexpected(poses.error());
-  const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - begin;
+  const double spent_ms = cpu_time_ms() - begin;
   if (Status written = lab::write_poses(options.output, *poses); !written) return written;
 
   std::optional<lab::TrajectoryError> error;
@@ -107,7 +121,7 @@ Status odometry(const OdometryCommand& options) {
     if (!compared) return tl::unexpected(compared.error());
     error = *compared;
   }
-  const double ms_each = spent.count() / static_cast<double>(sweeps->size());
+  const double ms_each = spent_ms / static_cast<double>(sweeps->size());
   if (options.json) {
     nlohmann::ordered_json report{
         {"output", options.output}, {"sweeps", sweeps->size()}, {"ms_per_sweep", ms_each}};

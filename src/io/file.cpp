@@ -28,8 +28,9 @@ std::string_view remedy(int error_number) {
     case EROFS:
       return "choose a folder that can be written to";
     case EISDIR:
-    case ENOTDIR:
       return "name a file";
+    case ENOTDIR:
+      return "a file stands where a folder should; choose another path";
     case EIO:
       return "check the disk";
     default:

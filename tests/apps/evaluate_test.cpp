@@ -40,6 +40,7 @@ TEST_F(EvaluateTool, WritesResultsTablesAndAPage) {
   EXPECT_EQ(rows[0]["codec"], "original");
   EXPECT_EQ(rows[0]["ratio"], 1.0);
   EXPECT_TRUE(rows[0]["mesh_f10"].is_null());
+  EXPECT_TRUE(rows[0]["step_translation_m"].is_null());
   EXPECT_EQ(rows[0]["f_score"]["0.10"], 100.0);
   EXPECT_EQ(rows[1]["codec"], "rcpcc");
   EXPECT_GT(rows[1]["ratio"].get<double>(), 1.0);
@@ -82,7 +83,9 @@ TEST_F(EvaluateTool, NamesWhatIsWrong) {
   expect_failure(run("evaluate nowhere -o r"), 1, {"nowhere", "does not exist"});
   expect_failure(run("evaluate drive -o r --tasks painting"), 2, {"--tasks", "painting"});
   expect_failure(run("evaluate drive -o r --peers gzip"), 2, {"--peers", "gzip"});
-  expect_failure(run("evaluate drive -o drive/sweeps/1000.bin"), 1, {"1000.bin"});
+  expect_failure(run("evaluate drive -o drive/sweeps/1000.bin"), 1, {"1000.bin", "a folder"});
+  expect_failure(run("evaluate drive -o r --weights absent.weights"), 1, {});
+  expect_failure(run("detect drive -o r --detector clusters --truth absent"), 1, {"absent"});
   write("drive/sweeps/1001.bin", "not a cloud");
   expect_failure(run(std::string("evaluate drive -o r") + kQuick), 1, {"1001.bin"});
 }

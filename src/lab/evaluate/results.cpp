@@ -15,14 +15,16 @@ namespace {
 using nlohmann::ordered_json;
 
 /// Keys that are always there.
-constexpr std::array<std::string_view, 8> kKeys{"translation_error_percent",
-                                                "mesh_f10",
-                                                "mesh_f10_truth",
-                                                "bev_ap50",
-                                                "bev_ap70",
-                                                "f_score",
-                                                "d1_psnr",
-                                                "d2_psnr"};
+constexpr std::array<std::string_view, 10> kKeys{"translation_error_percent",
+                                                 "rotation_error_deg_per_m",
+                                                 "step_translation_m",
+                                                 "mesh_f10",
+                                                 "mesh_f10_truth",
+                                                 "bev_ap50",
+                                                 "bev_ap70",
+                                                 "f_score",
+                                                 "d1_psnr",
+                                                 "d2_psnr"};
 
 ordered_json number(double value) {
   return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
