@@ -130,13 +130,13 @@ void print(const DetectCommand& options, const Detections& detections) {
 Status detect(const DetectCommand& options) {
   const auto sweeps = collect_clouds(options.inputs);
   if (!sweeps) return tl::unexpected(sweeps.error());
-  if (!options.truth.empty() && !std::filesystem::is_directory(options.truth)) {
+  std::error_code error;
+  if (!options.truth.empty() && !std::filesystem::is_directory(options.truth, error)) {
     return fail(ErrorCode::not_found,
                 options.truth + ": is no folder; give that of the drive's true boxes");
   }
   const auto detector = make_detector(options.detector, options.weights);
   if (!detector) return tl::unexpected(detector.error());
-  std::error_code error;
   std::filesystem::create_directories(options.output, error);
   if (error) return io_failure(options.output, "cannot be made", error.value());
   const auto detections = detect_all(*sweeps, **detector, options);

@@ -64,7 +64,7 @@ struct Totals {
     BenchRow row;
     row.codec = peer.codec();
     row.setting = peer.setting();
-    row.ratio = bytes > 0 ? 16.0 * points_in / bytes : 0.0;
+    row.ratio = bytes > 0 ? kBytesAPoint * points_in / bytes : 0.0;
     row.bytes = bytes / sweeps;
     row.points_in = points_in / sweeps;
     row.points_out = points_out / sweeps;

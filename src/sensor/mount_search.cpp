@@ -90,7 +90,7 @@ std::vector<TimedPoint> sampled(std::span<const Point> points, std::size_t count
     if (p[0] * p[0] + p[1] * p[1] < kNear * kNear) continue;
     const double time = arc_tangent(p[1], p[0]) / (2.0 * kPi) - zero;
     some.push_back({{static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])},
-                    static_cast<float>(time - std::floor(time + 0.5))});
+                    static_cast<float>(wrap(time))});
   }
   return some;
 }

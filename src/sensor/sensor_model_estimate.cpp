@@ -156,7 +156,7 @@ struct Miss {
 Miss miss_of(const BeamGeometry& beam, double rho, double z, double turn, int ticks) {
   const double height = z - (rho * beam.tan + beam.height_m);
   const double at = (turn - lateral_turns(beam, rho)) * ticks - beam.phase;
-  const double off = at - std::floor(at + 0.5);
+  const double off = wrap(at);
   const double aside = off / ticks * kTwoPi * rho;
   const double above = height * beam.inverse_slant;
   return {height, off, std::sqrt(aside * aside + above * above)};

@@ -13,15 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string hex(const LinkSecret& secret) {
-  std::string text;
-  for (const std::uint8_t byte : secret) {
-    text += "0123456789abcdef"[byte / 16];
-    text += "0123456789abcdef"[byte % 16];
-  }
-  return text;
-}
-
 class KeyFile : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -109,9 +100,9 @@ TEST(LinkKeys, AreDerivedAsTheFormatSays) {
   }
   const LinkKey key = counting_key("rover-1");
   const link::SessionKeys keys = link::derive_session(key, sender, receiver);
-  EXPECT_EQ(hex(keys.to_receiver),
+  EXPECT_EQ(hex(std::as_bytes(std::span(keys.to_receiver))),
             "99758c9311dbb4a44f8f9c451b7416f7e13ca8bd56c1e1e7d7ce71a8c582f109");
-  EXPECT_EQ(hex(keys.to_sender),
+  EXPECT_EQ(hex(std::as_bytes(std::span(keys.to_sender))),
             "a56ad0bed92526941a3506d7bee988e55decd4b4f91ad48731bd06c7f76394f2");
   EXPECT_EQ(link::passphrase(key),
             "c9c78e27c45256eef252f74d1f3d4810d77030f8bf274bfd00a0df03fa4ece6a");

@@ -7,19 +7,11 @@ namespace sweepcast::link {
 namespace {
 
 using test::Bytes;
+using test::hex;
 
 Bytes text(const std::string& words) {
   const auto bytes = std::as_bytes(std::span(words));
   return {bytes.begin(), bytes.end()};
-}
-
-std::string hex(std::span<const std::byte> bytes) {
-  std::string out;
-  for (const std::byte byte : bytes) {
-    out += "0123456789abcdef"[std::to_integer<unsigned>(byte) / 16];
-    out += "0123456789abcdef"[std::to_integer<unsigned>(byte) % 16];
-  }
-  return out;
 }
 
 class Packets : public ::testing::Test {

@@ -8,6 +8,7 @@ namespace sweepcast::link {
 namespace {
 
 using test::Bytes;
+using test::hex;
 
 SenderReport made_report() {
   SenderReport report;
@@ -22,15 +23,6 @@ SenderReport made_report() {
   report.can_override = true;
   report.override_level = 5;
   return report;
-}
-
-std::string hex(std::span<const std::byte> bytes) {
-  std::string out;
-  for (const std::byte byte : bytes) {
-    out += "0123456789abcdef"[std::to_integer<unsigned>(byte) / 16];
-    out += "0123456789abcdef"[std::to_integer<unsigned>(byte) % 16];
-  }
-  return out;
 }
 
 TEST(SenderReport, IsWrittenAsTheFormatSays) {

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,6 +26,16 @@ inline LinkKey counting_key(const std::string& robot) {
   key.robot = robot;
   for (std::size_t i = 0; i < key.secret.size(); ++i) key.secret[i] = static_cast<std::uint8_t>(i);
   return key;
+}
+
+/// Two digits a byte.
+inline std::string hex(std::span<const std::byte> bytes) {
+  std::string out;
+  for (const std::byte byte : bytes) {
+    out += "0123456789abcdef"[std::to_integer<unsigned>(byte) / 16];
+    out += "0123456789abcdef"[std::to_integer<unsigned>(byte) % 16];
+  }
+  return out;
 }
 
 inline Bytes bytes_of(std::size_t count, unsigned seed = 0) {

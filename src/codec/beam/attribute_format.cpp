@@ -9,6 +9,7 @@
 #include <type_traits>
 
 #include "codec/beam/integer_coder.hpp"
+#include "codec/beam/ordered_float.hpp"
 #include "codec/entropy/range_coder.hpp"
 
 namespace sweepcast::beam {
@@ -19,15 +20,6 @@ constexpr std::size_t kLargestPalette = 2048;
 constexpr std::int64_t kLargestOffset = std::int64_t{1} << 50;
 constexpr double kLargestIntensityStep = 1e12;
 constexpr int kRounds = 3;  // of medians by turns over rows and columns
-
-// The float's bits as an integer that rises with the float.
-std::uint32_t ordered_bits(float value) {
-  const auto bits = std::bit_cast<std::uint32_t>(value);
-  return (bits >> 31) != 0 ? ~bits : bits | 0x80000000U;
-}
-float float_of_ordered(std::uint32_t ordered) {
-  return std::bit_cast<float>((ordered >> 31) != 0 ? ordered & 0x7FFFFFFFU : ~ordered);
-}
 
 float scaled(const IntensityUnit& unit, std::int64_t value) {
   return static_cast<float>(static_cast<double>(value + unit.offset) * unit.step / unit.divisor);

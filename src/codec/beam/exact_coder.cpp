@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 
 #include "codec/beam/integer_coder.hpp"
+#include "codec/beam/ordered_float.hpp"
 #include "codec/entropy/range_coder.hpp"
 #include "core/bytes.hpp"
 #include "sensor/motion.hpp"
@@ -32,16 +32,6 @@ struct Grid {
     return sound ? static_cast<std::int64_t>(multiple) : 0;
   }
 };
-
-// The float's bits as an integer that rises with the float.
-std::int64_t ordered_code(float value) {
-  const auto bits = std::bit_cast<std::uint32_t>(value);
-  return (bits >> 31) != 0 ? ~bits : bits | 0x80000000U;
-}
-float float_of_code(std::int64_t ordered) {
-  const auto bits = static_cast<std::uint32_t>(ordered);
-  return std::bit_cast<float>((bits >> 31) != 0 ? bits & 0x7FFFFFFFU : ~bits);
-}
 
 // Zero may have a sign, which is coded apart.
 bool is_multiple(const Grid& grid, float value) {
@@ -132,9 +122,10 @@ class ExactCoder {
     if (grid_.divisor == 0) {
       // Beyond the floats only where damaged bytes stretch a point.
       const bool sound = std::abs(estimate) < 1e30;
-      const std::int64_t near = ordered_code(sound ? static_cast<float>(estimate) : 0.0F);
-      return float_of_code(
-          wrapped_sum(near, numbers.code(coder_, ordered_code(truth) - near, context)));
+      const std::int64_t near = ordered_bits(sound ? static_cast<float>(estimate) : 0.0F);
+      const std::int64_t miss = std::int64_t{ordered_bits(truth)} - near;
+      return float_of_ordered(
+          static_cast<std::uint32_t>(wrapped_sum(near, numbers.code(coder_, miss, context))));
     }
     const std::int64_t near = grid_.nearest(estimate);
     const std::int64_t multiple =

@@ -171,14 +171,18 @@ std::vector<Box> suppress_overlaps(std::vector<Box> boxes, double most) {
   std::vector<Box> kept;
   std::vector<Votes> votes;
   for (const Box& box : boxes) {
-    const auto better = std::find_if(kept.begin(), kept.end(),
-                                     [&](const Box& other) { return bev_iou(other, box) > most; });
+    double overlap = 0.0;
+    const auto better = std::find_if(kept.begin(), kept.end(), [&](const Box& other) {
+      overlap = bev_iou(other, box);
+      return overlap > most;
+    });
     const auto k = static_cast<std::size_t>(better - kept.begin());
     if (better == kept.end()) {
       kept.push_back(box);
       votes.emplace_back();
+      overlap = 1.0;
     }
-    if (bev_iou(kept[k], box) >= kSameThing) votes[k].add(kept[k], box);
+    if (overlap >= kSameThing) votes[k].add(kept[k], box);
   }
   for (std::size_t k = 0; k < kept.size(); ++k) votes[k].decide(kept[k]);
   return kept;

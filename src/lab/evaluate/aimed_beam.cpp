@@ -12,7 +12,6 @@
 namespace sweepcast::lab {
 namespace {
 
-constexpr double kBytesAPoint = 16.0;
 constexpr double kMostChange = 0.1;  ///< of a frame's budget, to make up for what came before
 
 EncoderOptions options_of(std::size_t target_bytes) {
@@ -45,7 +44,7 @@ class AimedBeam : public Peer {
 
   Result<std::span<const std::byte>> encode(const PointCloud& cloud) override {
     const double nominal =
-        std::max(1.0, kBytesAPoint * static_cast<double>(cloud.size()) / ratio_ - model_share_);
+        std::max(1.0, static_cast<double>(kBytesAPoint * cloud.size()) / ratio_ - model_share_);
     left_ += nominal;
     const double budget =
         std::clamp(left_, (1.0 - kMostChange) * nominal, (1.0 + kMostChange) * nominal);
@@ -94,7 +93,7 @@ Result<std::unique_ptr<Peer>> make_aimed_beam(double ratio, const PointCloud& fi
   const auto interval = static_cast<std::size_t>(probe_options.beam.model_interval);
   const std::size_t models = (sweeps + interval - 1) / interval;
   const double share = static_cast<double>(*model * models) / static_cast<double>(sweeps);
-  const double budget = kBytesAPoint * static_cast<double>(first.size()) / ratio - share;
+  const double budget = static_cast<double>(kBytesAPoint * first.size()) / ratio - share;
   if (budget < 1.0) {
     return fail(ErrorCode::invalid_argument,
                 fmt::format("beam: ratio {} leaves no byte beside the sensor's model; give more "

@@ -14,8 +14,6 @@
 namespace sweepcast::lab {
 namespace {
 
-constexpr double kBytesAnOriginalPoint = 16.0;
-
 /// CPU time that this thread has used, milliseconds.
 double thread_ms() {
   timespec now{};
@@ -43,7 +41,7 @@ struct Sums {
   [[nodiscard]] Coding coding(std::size_t sweep_count) const {
     const auto sweeps = static_cast<double>(sweep_count);
     Coding coding;
-    coding.ratio = bytes > 0.0 ? kBytesAnOriginalPoint * points / bytes : 0.0;
+    coding.ratio = bytes > 0.0 ? kBytesAPoint * points / bytes : 0.0;
     coding.bytes = bytes / sweeps;
     coding.encode_ms = encode_ms / sweeps;
     coding.decode_ms = decode_ms / sweeps;

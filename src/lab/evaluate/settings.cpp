@@ -22,9 +22,8 @@ class UncodedDrive : public Peer {
   UncodedDrive() : Peer(std::string(kOriginal), "") {}
 
   Result<std::span<const std::byte>> encode(const PointCloud& cloud) override {
-    constexpr std::size_t kPointBytes = 16;
     cloud_ = &cloud;
-    bytes_.resize(kPointBytes * cloud.size());
+    bytes_.resize(kBytesAPoint * cloud.size());
     return std::span<const std::byte>(bytes_);
   }
 

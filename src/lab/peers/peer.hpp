@@ -15,6 +15,9 @@
 
 namespace sweepcast::lab {
 
+/// Of a point as it comes in, uncoded: x, y, z and intensity as float32. Ratios refer to it.
+inline constexpr std::size_t kBytesAPoint = 16;
+
 /// A codec at one setting. What `encode` and `decode` do is what the benchmark times, so both do
 /// what a user of the codec would have to do, no less and no more. Whatever comes in, decoded
 /// points are finite; points that a codec cannot represent are missing among them. Damaged bytes
