@@ -36,7 +36,9 @@ TEST_F(Detect, FindsAndScoresCarsOfADrive) {
 TEST_F(Detect, NamesWhatIsWrong) {
   write_bin("sweep.bin", make_room(0.0F));
   const std::string detect = "detect sweep.bin -o out --detector clusters ";
-  expect_failure(run(detect + "--truth no"), 1, {"no/sweep.txt"});
+  expect_failure(run(detect + "--truth no"), 1, {"no: is no folder"});
+  write("bare/other.txt", "");
+  expect_failure(run(detect + "--truth bare"), 1, {"bare/sweep.txt"});
   write("bad/sweep.txt", "Car 1 2\n");
   expect_failure(run(detect + "--truth bad"), 1, {"bad/sweep.txt: line 1"});
   expect_failure(run("detect sweep.bin -o out --weights absent"), 1, {"sweepcast"});
