@@ -1,63 +1,131 @@
 #include "lab/odometry/odometry.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <cstdint>
+#include <utility>
 
 namespace sweepcast::lab {
 
 namespace {
 
-// Of the map's cubes: the points that enter it, and those that are registered.
+// Of a map's cubes: the points that enter it, and those that are registered.
 constexpr double kMapThinning = 0.5;
 constexpr double kKeyThinning = 1.5;
+
+// The coarsest map's cubes, at least, in metres; and what a map leaves to the next, of its cubes.
+constexpr double kCoarsest_m = 2.0;
+constexpr double kLeftShare = 0.2;
+
+constexpr int kStartRounds = 3;  // what a further one changes is below a centimetre
+
+std::vector<VoxelMap> maps_down_to(double voxel_m, double range_m) {
+  std::vector<VoxelMap> maps;
+  double size_m = voxel_m;
+  while (size_m < kCoarsest_m) size_m *= 2.0;
+  for (; size_m >= voxel_m; size_m /= 2.0) maps.emplace_back(size_m, range_m);
+  return maps;
+}
+
+// A sweep's points of a map's cubes. Two sweeps must differ in what decides among a cube's points.
+Points thinned(const Points& points, const VoxelMap& map, std::uint64_t number) {
+  return thin_by_voxel(points, map.voxel_m() * kMapThinning, 2 * number);
+}
+
+Points keys(const Points& points, const VoxelMap& map, std::uint64_t number) {
+  return thin_by_voxel(thinned(points, map, number), map.voxel_m() * kKeyThinning, 2 * number + 1);
+}
+
+// As they would look from where the sensor is at the last firing, if it moved by `motion` since the
+// first.
+Points deskewed(const Points& points, std::span<const float> when, const RigidTransform& motion) {
+  const Twist twist = log(motion);
+  if (when.empty() || twist.isZero()) return points;
+  Points moved(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    moved[i] = exp((when[i] - 1.0) * twist) * points[i];
+  }
+  return moved;
+}
+
+RegistrationOptions within(double threshold_m) {
+  RegistrationOptions options;
+  options.max_distance_m = 3.0 * threshold_m;
+  options.kernel = threshold_m / 3.0;  // as in KISS-ICP's released code, in m^2
+  return options;
+}
 
 }  // namespace
 
 Odometry::Odometry(const OdometryOptions& options)
     : options_(options),
-      map_(options.voxel_m, options.max_range_m),
+      maps_(maps_down_to(options.voxel_m, options.max_range_m)),
       threshold_m_(options.initial_threshold_m) {}
 
 RigidTransform Odometry::add(const PointCloud& cloud, std::span<const float> when) {
-  const RigidTransform last = poses_.empty() ? RigidTransform::Identity() : poses_.back();
-  const RigidTransform motion = predicted_motion();
-  const std::uint64_t seed = 2 * poses_.size();
-  Points to_map =
-      thin_by_voxel(in_range(cloud, when, motion), options_.voxel_m * kMapThinning, seed);
-  const Points keys = thin_by_voxel(to_map, options_.voxel_m * kKeyThinning, seed + 1);
-  RegistrationOptions registration;
-  registration.max_distance_m = 3.0 * threshold_m_;
-  registration.kernel = threshold_m_ / 3.0;  // as in its released code, in m^2
-  RigidTransform pose = register_points(keys, map_, last * motion, registration);
+  Sweep sweep = in_range(cloud, when);
+  if (poses_.empty()) {
+    insert(sweep.points, RigidTransform::Identity(), 0);
+    first_ = std::move(sweep);
+    return poses_.emplace_back(RigidTransform::Identity());
+  }
+  const RigidTransform motion = poses_.size() == 1 ? first_motion(sweep) : predicted_motion();
+  const Points points = deskewed(sweep.points, sweep.when, motion);
+  const RigidTransform guess = poses_.back() * motion;
+  const RigidTransform pose = find(points, guess);
+  learn_threshold(guess.inverse() * pose);
+  insert(points, pose, poses_.size());
+  return poses_.emplace_back(pose);
+}
 
-  learn_threshold((last * motion).inverse() * pose);
-  for (Eigen::Vector3d& point : to_map) point = pose * point;
-  map_.add(to_map, pose.translation());
-  poses_.push_back(pose);
+// The finite points in range.
+Odometry::Sweep Odometry::in_range(const PointCloud& cloud, std::span<const float> when) const {
+  Sweep sweep;
+  sweep.points.reserve(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Eigen::Vector3d point(cloud.x[i], cloud.y[i], cloud.z[i]);
+    const double range = point.norm();  // no number compares with NaN
+    if (!(range > options_.min_range_m && range < options_.max_range_m)) continue;
+    sweep.points.push_back(point);
+    if (!when.empty()) sweep.when.push_back(when[i]);
+  }
+  return sweep;
+}
+
+// From the first sweep to the second, none known before: found with both askew, then again with
+// both deskewed by what was found.
+RigidTransform Odometry::first_motion(const Sweep& second) {
+  RigidTransform motion = RigidTransform::Identity();
+  for (int round = 0; round < kStartRounds; ++round) {
+    motion = find(deskewed(second.points, second.when, motion), motion);
+    for (VoxelMap& map : maps_) map.clear();
+    insert(deskewed(first_.points, first_.when, motion), poses_.front(), 0);
+  }
+  first_ = {};
+  return motion;
+}
+
+// The pose of a deskewed sweep in the maps' frame, from a guess of it.
+RigidTransform Odometry::find(const Points& points, RigidTransform pose) const {
+  double threshold_m = threshold_m_;
+  for (const VoxelMap& map : maps_) {
+    pose = register_points(keys(points, map, poses_.size()), map, pose, within(threshold_m));
+    threshold_m = std::min(threshold_m, kLeftShare * map.voxel_m());
+  }
   return pose;
+}
+
+void Odometry::insert(const Points& points, const RigidTransform& pose, std::uint64_t number) {
+  for (VoxelMap& map : maps_) {
+    Points moved = thinned(points, map, number);
+    for (Eigen::Vector3d& point : moved) point = pose * point;
+    map.add(moved, pose.translation());
+  }
 }
 
 // Constant velocity: what it moved by during the last sweep.
 RigidTransform Odometry::predicted_motion() const {
   const std::size_t count = poses_.size();
-  if (count < 2) return RigidTransform::Identity();
   return poses_[count - 2].inverse() * poses_[count - 1];
-}
-
-// The finite points in range, as they would look from where the sensor is at the last firing.
-Points Odometry::in_range(const PointCloud& cloud, std::span<const float> when,
-                          const RigidTransform& motion) const {
-  const Twist twist = log(motion);
-  const bool is_skewed = !when.empty() && !twist.isZero();
-  Points points;
-  points.reserve(cloud.size());
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Eigen::Vector3d point(cloud.x[i], cloud.y[i], cloud.z[i]);
-    const double range = point.norm();  // no number compares with NaN
-    if (!(range > options_.min_range_m && range < options_.max_range_m)) continue;
-    points.push_back(is_skewed ? exp((when[i] - 1.0) * twist) * point : point);
-  }
-  return points;
 }
 
 // The spread of what ICP had to correct, seen at the edge of the range (KISS-ICP, III.C).
@@ -65,7 +133,7 @@ void Odometry::learn_threshold(const RigidTransform& correction) {
   const double angle = Eigen::AngleAxisd(correction.linear()).angle();
   const double error =
       2.0 * options_.max_range_m * std::sin(angle / 2.0) + correction.translation().norm();
-  if (poses_.empty() || error <= options_.min_motion_m) return;
+  if (error <= options_.min_motion_m) return;
   squared_corrections_ += error * error;
   ++corrections_;
   threshold_m_ = std::sqrt(squared_corrections_ / corrections_);

@@ -1,11 +1,17 @@
 // LiDAR odometry: where the sensor was at each sweep, from the sweeps alone.
 //
 // Follows KISS-ICP (Vizzo et al., IEEE RA-L 2023): constant-velocity prediction and deskewing, two
-// voxel grids, an adaptive threshold, point-to-point ICP against a voxel map. One difference: of a
-// cube's points the one nearest to a random place in it stays, not the first, so that two codecs
-// that give the same points in another order give the same path.
+// voxel grids, an adaptive threshold, point-to-point ICP against a voxel map. Three differences:
+//   - Of a cube's points the one nearest to a random place in it stays, not the first, so that two
+//     codecs that give the same points in another order give the same path.
+//   - A map of coarse cubes finds the place, and finer ones refine it: alone, a fine map holds on
+//   to
+//     the rings on the ground, which look as if the sensor stood still.
+//   - The first two sweeps are deskewed by the motion found between them, over and over; else the
+//     first one's points, put askew, pull at all that follow.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -19,7 +25,7 @@ namespace sweepcast::lab {
 struct OdometryOptions {
   double min_range_m = 3.0;  ///< nearer points are the robot itself
   double max_range_m = 100.0;
-  double voxel_m = 1.0;  ///< the map's cubes; a hundredth of the range
+  double voxel_m = 1.0;  ///< the finest map's cubes; a hundredth of the range
   double initial_threshold_m = 2.0;
   double min_motion_m = 0.1;  ///< smaller corrections do not teach the threshold
 };
@@ -39,13 +45,22 @@ class Odometry {
   [[nodiscard]] const std::vector<RigidTransform>& poses() const { return poses_; }
 
  private:
+  /// Points in the sensor's frame and their share of the sweep, as many or none.
+  struct Sweep {
+    Points points;
+    std::vector<float> when;
+  };
+
   [[nodiscard]] RigidTransform predicted_motion() const;
-  [[nodiscard]] Points in_range(const PointCloud& cloud, std::span<const float> when,
-                                const RigidTransform& motion) const;
+  [[nodiscard]] Sweep in_range(const PointCloud& cloud, std::span<const float> when) const;
+  [[nodiscard]] RigidTransform first_motion(const Sweep& second);
+  [[nodiscard]] RigidTransform find(const Points& points, RigidTransform pose) const;
+  void insert(const Points& points, const RigidTransform& pose, std::uint64_t number);
   void learn_threshold(const RigidTransform& correction);
 
   OdometryOptions options_;
-  VoxelMap map_;
+  std::vector<VoxelMap> maps_;  ///< each of cubes half as wide as the one before
+  Sweep first_;                 ///< until the second has come
   std::vector<RigidTransform> poses_;
   double squared_corrections_ = 0.0;
   int corrections_ = 0;

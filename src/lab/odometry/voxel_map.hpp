@@ -41,6 +41,9 @@ class VoxelMap {
   /// The map's nearest point in the cube of `point` and its 26 neighbours, if any.
   [[nodiscard]] std::optional<Eigen::Vector3d> nearest(const Eigen::Vector3d& point) const;
 
+  void clear() { cubes_.clear(); }
+
+  [[nodiscard]] double voxel_m() const { return size_m_; }
   [[nodiscard]] bool empty() const { return cubes_.empty(); }
   [[nodiscard]] std::size_t size() const;  ///< points in all
 
