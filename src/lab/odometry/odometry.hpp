@@ -4,9 +4,8 @@
 // voxel grids, an adaptive threshold, point-to-point ICP against a voxel map. Three differences:
 //   - Of a cube's points the one nearest to a random place in it stays, not the first, so that two
 //     codecs that give the same points in another order give the same path.
-//   - A map of coarse cubes finds the place, and finer ones refine it: alone, a fine map holds on
-//   to
-//     the rings on the ground, which look as if the sensor stood still.
+//   - A map of coarse cubes finds the place, and finer ones refine it. Alone, a fine map holds on
+//     to the rings on the ground, which look as if the sensor stood still.
 //   - The first two sweeps are deskewed by the motion found between them, over and over; else the
 //     first one's points, put askew, pull at all that follow.
 #pragma once
