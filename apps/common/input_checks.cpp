@@ -19,12 +19,10 @@ constexpr float kFarthest = 1000.0F;
 std::uint64_t count_implausible(const PointCloud& cloud, bool counts_not_finite) {
   std::uint64_t count = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const float x = std::abs(cloud.x[i]);
-    const float y = std::abs(cloud.y[i]);
-    const float z = std::abs(cloud.z[i]);
-    if (std::isfinite(x) && std::isfinite(y) && std::isfinite(z)) {
-      if (std::max({x, y, z}) > kFarthest) ++count;
-    } else if (counts_not_finite) {
+    if (!cloud.is_finite(i)) {
+      if (counts_not_finite) ++count;
+    } else if (std::max({std::abs(cloud.x[i]), std::abs(cloud.y[i]), std::abs(cloud.z[i])}) >
+               kFarthest) {
       ++count;
     }
   }

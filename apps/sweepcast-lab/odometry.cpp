@@ -3,8 +3,6 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
@@ -45,7 +43,9 @@ Result<std::vector<lab::RigidTransform>> run_odometry(
   std::size_t empty = 0;  // sweeps without a finite point
   for (const auto& sweep : sweeps) {
     if (Status read = read_cloud(sweep, cloud); !read) return tl::unexpected(read.error());
-    empty += std::none_of(cloud.x.begin(), cloud.x.end(), [](float x) { return std::isfinite(x); });
+    std::size_t finite = 0;
+    for (std::size_t i = 0; i < cloud.size(); ++i) finite += cloud.is_finite(i) ? 1 : 0;
+    if (finite == 0) ++empty;
     when.clear();
     if (options.deskew == "auto") {
       if (const auto clock = lab::SweepClock::learn(cloud)) clock->tell(cloud, when);

@@ -1,6 +1,7 @@
 // Clouds: an owning one in columns, and a view of anybody's memory.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -27,6 +28,11 @@ struct PointCloud {
   [[nodiscard]] bool has_intensity() const noexcept { return !intensity.empty(); }
   [[nodiscard]] bool has_ring() const noexcept { return !ring.empty(); }
   [[nodiscard]] bool has_time() const noexcept { return !time_ns.empty(); }
+
+  /// Whether all coordinates of a point are numbers: neither NaN nor infinite.
+  [[nodiscard]] bool is_finite(std::size_t i) const noexcept {
+    return std::isfinite(x[i]) && std::isfinite(y[i]) && std::isfinite(z[i]);
+  }
 
   /// Empties every column and keeps their memory.
   void clear() noexcept;

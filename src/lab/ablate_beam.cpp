@@ -1,7 +1,6 @@
 #include "lab/ablate_beam.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -266,10 +265,8 @@ class StageMeter {
   static std::vector<std::uint32_t> finite_points(const PointCloud& cloud) {
     std::vector<std::uint32_t> points;
     for (std::uint32_t i = 0; i < cloud.size(); ++i) {
-      const bool finite =
-          std::isfinite(cloud.x[i]) && std::isfinite(cloud.y[i]) && std::isfinite(cloud.z[i]);
       const bool somewhere = cloud.x[i] != 0.0F || cloud.y[i] != 0.0F || cloud.z[i] != 0.0F;
-      if (finite && somewhere) points.push_back(i);
+      if (cloud.is_finite(i) && somewhere) points.push_back(i);
     }
     return points;
   }

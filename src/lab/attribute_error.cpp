@@ -13,10 +13,8 @@ namespace {
 std::vector<std::size_t> usable(const PointCloud& cloud) {
   std::vector<std::size_t> indices;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const bool finite =
-        std::isfinite(cloud.x[i]) && std::isfinite(cloud.y[i]) && std::isfinite(cloud.z[i]);
     const bool origin = cloud.x[i] == 0.0F && cloud.y[i] == 0.0F && cloud.z[i] == 0.0F;
-    if (finite && !origin) indices.push_back(i);
+    if (cloud.is_finite(i) && !origin) indices.push_back(i);
   }
   return indices;
 }

@@ -1,7 +1,6 @@
 #include "view/foxglove.hpp"
 
 #include <bit>
-#include <cmath>
 #include <initializer_list>
 
 #include "view/protobuf.hpp"
@@ -155,15 +154,14 @@ Bytes point_cloud_message(const PointCloud& cloud, std::int64_t stamp_ns,
   message.fixed32(4, stride);
   out.insert(out.end(), fields.begin(), fields.end());
 
-  const auto is_there = [&](std::size_t i) { return std::isfinite(cloud.x[i]); };
   std::size_t points = 0;
-  for (std::size_t i = 0; i < cloud.size(); ++i) points += is_there(i) ? 1 : 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) points += cloud.is_finite(i) ? 1 : 0;
   out.reserve(out.size() + points * stride + 16);
   message.begin_bytes(6, points * stride);
   ByteWriter data(out);
   const auto put = [&](float value) { data.put(std::bit_cast<std::uint32_t>(value)); };
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (!is_there(i)) continue;
+    if (!cloud.is_finite(i)) continue;
     put(cloud.x[i]);
     put(cloud.y[i]);
     put(cloud.z[i]);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
 #include <cstring>
 #include <optional>
 
@@ -89,7 +88,7 @@ Answer original_of(std::string_view path, std::string_view stream, Recording* re
     out.put(bits);
   };
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (!std::isfinite(cloud.x[i] + cloud.y[i] + cloud.z[i])) continue;
+    if (!cloud.is_finite(i)) continue;
     put(cloud.x[i]);
     put(cloud.y[i]);
     put(cloud.z[i]);

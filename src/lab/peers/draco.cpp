@@ -23,10 +23,7 @@ Points finite_points(const PointCloud& cloud) {
   Points points;
   points.reserve(cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const std::array<float, 3> point{cloud.x[i], cloud.y[i], cloud.z[i]};
-    if (std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2])) {
-      points.push_back(point);
-    }
+    if (cloud.is_finite(i)) points.push_back({cloud.x[i], cloud.y[i], cloud.z[i]});
   }
   return points;
 }

@@ -15,9 +15,7 @@ constexpr int kUniformRows = 64;
 
 bool has_finite_point(const PointCloud& cloud) {
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (std::isfinite(cloud.x[i]) && std::isfinite(cloud.y[i]) && std::isfinite(cloud.z[i])) {
-      return true;
-    }
+    if (cloud.is_finite(i)) return true;
   }
   return false;
 }
