@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
@@ -33,6 +34,14 @@ struct OdometryCommand {
   bool json = false;
 };
 
+bool has_point_in_range(const PointCloud& cloud, const lab::OdometryOptions& options) {
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const float range = std::hypot(cloud.x[i], cloud.y[i], cloud.z[i]);  // NaN compares with none
+    if (range > options.min_range_m && range < options.max_range_m) return true;
+  }
+  return false;
+}
+
 /// Poses of the sweeps. With `deskew`, those with times are deskewed.
 Result<std::vector<lab::RigidTransform>> run_odometry(
     const std::vector<std::filesystem::path>& sweeps, const OdometryCommand& options) {
@@ -40,12 +49,10 @@ Result<std::vector<lab::RigidTransform>> run_odometry(
   Progress progress("odometry", sweeps.size());
   PointCloud cloud;
   std::vector<float> when;
-  std::size_t empty = 0;  // sweeps without a finite point
+  std::size_t empty = 0;  // sweeps without a point in range
   for (const auto& sweep : sweeps) {
     if (Status read = read_cloud(sweep, cloud); !read) return tl::unexpected(read.error());
-    std::size_t finite = 0;
-    for (std::size_t i = 0; i < cloud.size(); ++i) finite += cloud.is_finite(i) ? 1 : 0;
-    if (finite == 0) ++empty;
+    if (!has_point_in_range(cloud, options.options)) ++empty;
     when.clear();
     if (options.deskew == "auto") {
       if (const auto clock = lab::SweepClock::learn(cloud)) clock->tell(cloud, when);
@@ -54,13 +61,15 @@ Result<std::vector<lab::RigidTransform>> run_odometry(
     progress.step();
   }
   if (empty == sweeps.size()) {
-    return fail(
-        ErrorCode::invalid_argument,
-        sweeps.front().string() + ": no sweep from here on has a finite point; give others");
+    return fail(ErrorCode::invalid_argument,
+                fmt::format("{}: neither this sweep nor one after it has a point from {} to {} m "
+                            "away; give others, or another --min-range and --max-range",
+                            sweeps.front().string(), options.options.min_range_m,
+                            options.options.max_range_m));
   }
   if (empty > 0) {
     print_note(
-        fmt::format("{} sweeps have no finite point; motion goes on there as before", empty));
+        fmt::format("{} sweeps have no point in range; motion goes on there as before", empty));
   }
   return odometry.poses();
 }

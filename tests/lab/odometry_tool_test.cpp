@@ -38,6 +38,8 @@ TEST_F(OdometryTool, NamesWhatIsWrong) {
   expect_failure(run("odometry sweep.bin -o p.txt --truth few.txt"), 1, {"few.txt", "0 poses"});
   write("text.txt", "1 0 0 0 0 1 0 0 0 0 1\n");
   expect_failure(run("odometry sweep.bin -o p.txt --truth text.txt"), 1, {"text.txt"});
+  expect_failure(run("odometry sweep.bin -o p.txt --min-range 50 --max-range 10"), 1,
+                 {"sweep.bin", "--min-range"});
   EXPECT_FALSE(exists("p.txt"));
   expect_failure(run("odometry sweep.bin -o no/p.txt"), 1, {"no/p.txt"});
 }
