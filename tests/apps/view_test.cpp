@@ -15,9 +15,10 @@ namespace {
 
 class ViewTool : public ToolTest {
  protected:
-  /// Starts a server on a free port as $V, and sets `PORT` for the rest of the line.
+  /// Starts a server on a free port as $V, and sets `PORT` for the rest of the line. What an
+  /// earlier one has told of itself is wiped first: the new one may be slower than the shell.
   static std::string viewing(const std::string& arguments) {
-    return "\"$SWEEPCAST\" view " + arguments +
+    return ": >url; \"$SWEEPCAST\" view " + arguments +
            " --port 0 >url 2>note & V=$!; until grep -q http url; do kill -0 $V || exit 9; done; "
            "PORT=$(sed -n 's/.*:\\([0-9]*\\)$/\\1/p' url); ";
   }
