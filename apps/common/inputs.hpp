@@ -20,4 +20,10 @@ namespace sweepcast::app {
 [[nodiscard]] Result<std::vector<std::filesystem::path>> collect_clouds(
     const std::vector<std::string>& inputs);
 
+/// Refuses an output that is one of what the command reads (empty paths count not), which it would
+/// overwrite. Errors: invalid_argument.
+[[nodiscard]] Status check_output(const std::filesystem::path& output,
+                                  std::vector<std::filesystem::path> reads,
+                                  const std::vector<std::filesystem::path>& others = {});
+
 }  // namespace sweepcast::app

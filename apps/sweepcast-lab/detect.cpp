@@ -135,6 +135,7 @@ Status detect(const DetectCommand& options) {
     return fail(ErrorCode::not_found,
                 options.truth + ": is no folder; give that of the drive's true boxes");
   }
+  if (Status checked = check_output(options.output, {options.truth}); !checked) return checked;
   const auto detector = make_detector(options.detector, options.weights);
   if (!detector) return tl::unexpected(detector.error());
   std::filesystem::create_directories(options.output, error);

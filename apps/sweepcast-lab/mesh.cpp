@@ -172,6 +172,10 @@ Status mesh(const MeshCommand& options) {
                               originals.size(), sweeps->size()));
     }
   }
+  if (Status checked = check_output(options.output, {options.poses, options.truth}, *sweeps);
+      !checked) {
+    return checked;
+  }
   const auto poses = lab::read_poses(options.poses);
   if (!poses) return tl::unexpected(poses.error());
   if (poses->size() < sweeps->size()) {

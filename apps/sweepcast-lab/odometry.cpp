@@ -106,6 +106,9 @@ void print_text(const OdometryCommand& options, std::size_t sweeps, double ms_ea
 Status odometry(const OdometryCommand& options) {
   const auto sweeps = collect_clouds(options.inputs);
   if (!sweeps) return tl::unexpected(sweeps.error());
+  if (Status checked = check_output(options.output, {options.truth}, *sweeps); !checked) {
+    return checked;
+  }
   std::vector<lab::RigidTransform> truth;
   if (!options.truth.empty()) {
     auto read = lab::read_poses(options.truth);

@@ -41,6 +41,9 @@ TEST_F(Detect, NamesWhatIsWrong) {
   expect_failure(run(detect + "--truth bare"), 1, {"bare/sweep.txt"});
   write("bad/sweep.txt", "Car 1 2\n");
   expect_failure(run(detect + "--truth bad"), 1, {"bad/sweep.txt: line 1"});
+  expect_failure(run("detect sweep.bin -o bad/. --detector clusters --truth bad"), 1,
+                 {"another output"});
+  EXPECT_EQ(read("bad/sweep.txt"), "Car 1 2\n");
   expect_failure(run("detect sweep.bin -o out --weights absent"), 1, {"sweepcast"});
   expect_failure(run("detect sweep.bin -o out --detector eyes"), 2, {"eyes"});
   expect_failure(run("train-detector absent -o w"), 1, {"absent"});

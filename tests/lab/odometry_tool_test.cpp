@@ -41,6 +41,10 @@ TEST_F(OdometryTool, NamesWhatIsWrong) {
   expect_failure(run("odometry sweep.bin -o p.txt --min-range 50 --max-range 10"), 1,
                  {"sweep.bin", "--min-range"});
   EXPECT_FALSE(exists("p.txt"));
+  expect_failure(run("odometry sweep.bin -o ./sweep.bin"), 1, {"sweep.bin", "another output"});
+  expect_failure(run("odometry sweep.bin -o few.txt --truth few.txt"), 1, {"another output"});
+  expect_failure(run("mesh sweep.bin --poses few.txt -o few.txt"), 1, {"another output"});
+  EXPECT_EQ(read("few.txt"), "");
   expect_failure(run("odometry sweep.bin -o no/p.txt"), 1, {"no/p.txt"});
 }
 
