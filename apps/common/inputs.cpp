@@ -121,15 +121,14 @@ Result<std::vector<fs::path>> collect_clouds(const std::vector<std::string>& inp
   return all;
 }
 
-Status check_output(const fs::path& output, Paths reads, const Paths& others) {
-  reads.insert(reads.end(), others.begin(), others.end());
+Status check_output(const fs::path& output, const Paths& reads) {
   for (const fs::path& read : reads) {
     std::error_code ignored;  // what is not there is not the same
     if (!read.empty() && fs::equivalent(output, read, ignored)) {
       return fail(ErrorCode::invalid_argument,
                   output.string() +
-                      ": is read by this command and would be overwritten; give "
-                      "another output");
+                      ": is read by this command and would be overwritten; "
+                      "give another output");
     }
   }
   return {};

@@ -23,7 +23,6 @@ namespace sweepcast::app {
 /// Refuses an output that is one of what the command reads (empty paths count not), which it would
 /// overwrite. Errors: invalid_argument.
 [[nodiscard]] Status check_output(const std::filesystem::path& output,
-                                  std::vector<std::filesystem::path> reads,
-                                  const std::vector<std::filesystem::path>& others = {});
+                                  const std::vector<std::filesystem::path>& reads);
 
 }  // namespace sweepcast::app

@@ -172,10 +172,10 @@ Status mesh(const MeshCommand& options) {
                               originals.size(), sweeps->size()));
     }
   }
-  if (Status checked = check_output(options.output, {options.poses, options.truth}, *sweeps);
-      !checked) {
-    return checked;
-  }
+  Files reads = *sweeps;
+  reads.insert(reads.end(), originals.begin(), originals.end());
+  reads.insert(reads.end(), {options.poses, options.truth});
+  if (Status checked = check_output(options.output, reads); !checked) return checked;
   const auto poses = lab::read_poses(options.poses);
   if (!poses) return tl::unexpected(poses.error());
   if (poses->size() < sweeps->size()) {

@@ -3,7 +3,6 @@
 
 #include <fmt/core.h>
 
-#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
@@ -34,14 +33,6 @@ struct OdometryCommand {
   bool json = false;
 };
 
-bool has_point_in_range(const PointCloud& cloud, const lab::OdometryOptions& options) {
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const float range = std::hypot(cloud.x[i], cloud.y[i], cloud.z[i]);  // NaN compares with none
-    if (range > options.min_range_m && range < options.max_range_m) return true;
-  }
-  return false;
-}
-
 /// Poses of the sweeps. With `deskew`, those with times are deskewed.
 Result<std::vector<lab::RigidTransform>> run_odometry(
     const std::vector<std::filesystem::path>& sweeps, const OdometryCommand& options) {
@@ -49,10 +40,8 @@ Result<std::vector<lab::RigidTransform>> run_odometry(
   Progress progress("odometry", sweeps.size());
   PointCloud cloud;
   std::vector<float> when;
-  std::size_t empty = 0;  // sweeps without a point in range
   for (const auto& sweep : sweeps) {
     if (Status read = read_cloud(sweep, cloud); !read) return tl::unexpected(read.error());
-    if (!has_point_in_range(cloud, options.options)) ++empty;
     when.clear();
     if (options.deskew == "auto") {
       if (const auto clock = lab::SweepClock::learn(cloud)) clock->tell(cloud, when);
@@ -60,6 +49,7 @@ Result<std::vector<lab::RigidTransform>> run_odometry(
     odometry.add(cloud, when);
     progress.step();
   }
+  const std::size_t empty = odometry.empty_sweeps();
   if (empty == sweeps.size()) {
     return fail(ErrorCode::invalid_argument,
                 fmt::format("{}: neither this sweep nor one after it has a point from {} to {} m "
@@ -106,9 +96,9 @@ void print_text(const OdometryCommand& options, std::size_t sweeps, double ms_ea
 Status odometry(const OdometryCommand& options) {
   const auto sweeps = collect_clouds(options.inputs);
   if (!sweeps) return tl::unexpected(sweeps.error());
-  if (Status checked = check_output(options.output, {options.truth}, *sweeps); !checked) {
-    return checked;
-  }
+  auto reads = *sweeps;
+  reads.emplace_back(options.truth);
+  if (Status checked = check_output(options.output, reads); !checked) return checked;
   std::vector<lab::RigidTransform> truth;
   if (!options.truth.empty()) {
     auto read = lab::read_poses(options.truth);

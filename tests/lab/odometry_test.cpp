@@ -183,6 +183,7 @@ TEST(Odometry, TakesSweepsWithoutAnyUsablePoint) {
   for (const PointCloud* cloud : {&empty, &odd, &empty}) {
     EXPECT_TRUE(odometry.add(*cloud, {}).isApprox(RigidTransform::Identity()));
   }
+  EXPECT_EQ(odometry.empty_sweeps(), 3U);
 }
 
 TEST(SweepClock, LearnsSenseAndStartFromTimes) {

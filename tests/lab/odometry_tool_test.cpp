@@ -1,7 +1,6 @@
 // `sweepcast odometry`, as a user runs it.
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -44,6 +43,9 @@ TEST_F(OdometryTool, NamesWhatIsWrong) {
   expect_failure(run("odometry sweep.bin -o ./sweep.bin"), 1, {"sweep.bin", "another output"});
   expect_failure(run("odometry sweep.bin -o few.txt --truth few.txt"), 1, {"another output"});
   expect_failure(run("mesh sweep.bin --poses few.txt -o few.txt"), 1, {"another output"});
+  write_bin("raw/sweep.bin", make_room(0.0F));
+  expect_failure(run("mesh sweep.bin --poses few.txt --originals raw -o raw/sweep.bin"), 1,
+                 {"another output"});
   EXPECT_EQ(read("few.txt"), "");
   expect_failure(run("odometry sweep.bin -o no/p.txt"), 1, {"no/p.txt"});
 }

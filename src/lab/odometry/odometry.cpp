@@ -26,15 +26,6 @@ std::vector<VoxelMap> maps_down_to(double voxel_m, double range_m) {
   return maps;
 }
 
-// A sweep's points of a map's cubes. Two sweeps must differ in what decides among a cube's points.
-Points thinned(const Points& points, const VoxelMap& map, std::uint64_t number) {
-  return thin_by_voxel(points, map.voxel_m() * kMapThinning, 2 * number);
-}
-
-Points keys(const Points& points, const VoxelMap& map, std::uint64_t number) {
-  return thin_by_voxel(thinned(points, map, number), map.voxel_m() * kKeyThinning, 2 * number + 1);
-}
-
 // As they would look from where the sensor is at the last firing, if it moved by `motion` since the
 // first.
 Points deskewed(const Points& points, std::span<const float> when, const RigidTransform& motion) {
@@ -63,17 +54,18 @@ Odometry::Odometry(const OdometryOptions& options)
 
 RigidTransform Odometry::add(const PointCloud& cloud, std::span<const float> when) {
   Sweep sweep = in_range(cloud, when);
+  if (sweep.points.empty()) ++empty_sweeps_;
   if (poses_.empty()) {
-    insert(sweep.points, RigidTransform::Identity(), 0);
+    insert(thinned(sweep.points, 0), RigidTransform::Identity());
     first_ = std::move(sweep);
     return poses_.emplace_back(RigidTransform::Identity());
   }
   const RigidTransform motion = poses_.size() == 1 ? first_motion(sweep) : predicted_motion();
-  const Points points = deskewed(sweep.points, sweep.when, motion);
+  Layers layers = thinned(deskewed(sweep.points, sweep.when, motion), poses_.size());
   const RigidTransform guess = poses_.back() * motion;
-  const RigidTransform pose = find(points, guess);
+  const RigidTransform pose = find(layers, guess);
   learn_threshold(guess.inverse() * pose);
-  insert(points, pose, poses_.size());
+  insert(std::move(layers), pose);
   return poses_.emplace_back(pose);
 }
 
@@ -96,29 +88,40 @@ Odometry::Sweep Odometry::in_range(const PointCloud& cloud, std::span<const floa
 RigidTransform Odometry::first_motion(const Sweep& second) {
   RigidTransform motion = RigidTransform::Identity();
   for (int round = 0; round < kStartRounds; ++round) {
-    motion = find(deskewed(second.points, second.when, motion), motion);
+    motion = find(thinned(deskewed(second.points, second.when, motion), 1), motion);
     for (VoxelMap& map : maps_) map.clear();
-    insert(deskewed(first_.points, first_.when, motion), poses_.front(), 0);
+    insert(thinned(deskewed(first_.points, first_.when, motion), 0), poses_.front());
   }
   first_ = {};
   return motion;
 }
 
-// The pose of a deskewed sweep in the maps' frame, from a guess of it.
-RigidTransform Odometry::find(const Points& points, RigidTransform pose) const {
-  double threshold_m = threshold_m_;
+// Of the number-th sweep's points, those for each map. Two sweeps must differ in what decides among
+// a cube's points.
+Odometry::Layers Odometry::thinned(const Points& points, std::uint64_t number) const {
+  Layers layers;
   for (const VoxelMap& map : maps_) {
-    pose = register_points(keys(points, map, poses_.size()), map, pose, within(threshold_m));
-    threshold_m = std::min(threshold_m, kLeftShare * map.voxel_m());
+    layers.push_back(thin_by_voxel(points, map.voxel_m() * kMapThinning, 2 * number));
+  }
+  return layers;
+}
+
+// The pose of the next sweep, deskewed, in the maps' frame, from a guess of it.
+RigidTransform Odometry::find(const Layers& layers, RigidTransform pose) const {
+  double threshold_m = threshold_m_;
+  for (std::size_t i = 0; i < maps_.size(); ++i) {
+    const double voxel_m = maps_[i].voxel_m();
+    const Points keys = thin_by_voxel(layers[i], voxel_m * kKeyThinning, 2 * poses_.size() + 1);
+    pose = register_points(keys, maps_[i], pose, within(threshold_m));
+    threshold_m = std::min(threshold_m, kLeftShare * voxel_m);
   }
   return pose;
 }
 
-void Odometry::insert(const Points& points, const RigidTransform& pose, std::uint64_t number) {
-  for (VoxelMap& map : maps_) {
-    Points moved = thinned(points, map, number);
-    for (Eigen::Vector3d& point : moved) point = pose * point;
-    map.add(moved, pose.translation());
+void Odometry::insert(Layers layers, const RigidTransform& pose) {
+  for (std::size_t i = 0; i < maps_.size(); ++i) {
+    for (Eigen::Vector3d& point : layers[i]) point = pose * point;
+    maps_[i].add(layers[i], pose.translation());
   }
 }
 

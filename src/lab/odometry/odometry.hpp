@@ -10,6 +10,7 @@
 //     first one's points, put askew, pull at all that follow.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -43,6 +44,9 @@ class Odometry {
   /// The poses so far, one a sweep.
   [[nodiscard]] const std::vector<RigidTransform>& poses() const { return poses_; }
 
+  /// How many of the sweeps had no point in range; motion goes on there as before.
+  [[nodiscard]] std::size_t empty_sweeps() const { return empty_sweeps_; }
+
  private:
   /// Points in the sensor's frame and their share of the sweep, as many or none.
   struct Sweep {
@@ -50,17 +54,21 @@ class Odometry {
     std::vector<float> when;
   };
 
+  using Layers = std::vector<Points>;  ///< a sweep's points for each of the maps
+
   [[nodiscard]] RigidTransform predicted_motion() const;
   [[nodiscard]] Sweep in_range(const PointCloud& cloud, std::span<const float> when) const;
   [[nodiscard]] RigidTransform first_motion(const Sweep& second);
-  [[nodiscard]] RigidTransform find(const Points& points, RigidTransform pose) const;
-  void insert(const Points& points, const RigidTransform& pose, std::uint64_t number);
+  [[nodiscard]] Layers thinned(const Points& points, std::uint64_t number) const;
+  [[nodiscard]] RigidTransform find(const Layers& layers, RigidTransform pose) const;
+  void insert(Layers layers, const RigidTransform& pose);
   void learn_threshold(const RigidTransform& correction);
 
   OdometryOptions options_;
   std::vector<VoxelMap> maps_;  ///< each of cubes half as wide as the one before
   Sweep first_;                 ///< until the second has come
   std::vector<RigidTransform> poses_;
+  std::size_t empty_sweeps_ = 0;
   double squared_corrections_ = 0.0;
   int corrections_ = 0;
   double threshold_m_;
